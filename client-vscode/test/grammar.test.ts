@@ -62,7 +62,7 @@ async function expectTokens(scope: string, text: string, ...expected: string[]):
 test("a feature has its tags, headings, steps, names and times", async () => {
   const text = `@story=https:;;x.org
   Szenario: t:fetch -- 1
-    Given "a:b" is located at "c \\" d" within 0.5 seconds after event "t:e"
+    Given "a:b" is located at "c \\" d" for 0.5 seconds after event "t:e"
       | name |`;
   assert.deepEqual(await tokens("text.gherkin.robbdd", text), [
     "@story=https:;;x.org → storage.type.annotation.tag",
@@ -72,7 +72,7 @@ test("a feature has its tags, headings, steps, names and times", async () => {
     "Given → keyword.control.step",
     '"a:b" → string.quoted.double',
     '"c \\" d" → string.quoted.double',
-    "within → keyword.other.time",
+    "for → keyword.other.time",
     "after event → keyword.other.time",
     '"t:e" → string.quoted.double',
     "name → variable.other.constant",

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.physics
 GIVEN = (5, "given", f'"{CUBE}" is located at "env:bench_ws" before event "t:pick-start"')
 WHEN = (6, "when", f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"')
 HELD = (7, "then", f'"{CUBE}" is held by "{PANDA}" after event "t:pick-end"')
-RESTS = (8, "then", f'"{CUBE}" is located at "{BIN_WS}" within 2 seconds after event "t:end"')
+RESTS = (8, "then", f'"{CUBE}" is located at "{BIN_WS}" for 2 seconds after event "t:end"')
 THERE = (9, "then", f'"{CUBE}" is located at "{BIN_WS}" after event "t:place-end"')
 
 

@@ -39,13 +39,13 @@ CLAUSES = (
     ("given", f'"{CUBE}" has config "friction" = "0.9" before event "t:pick-start"', "violated"),
     ("when", f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"', "holds"),
     ("when", 'event "t:place-end" occurs', "holds"),
-    ("then", f'"{CUBE}" is located at "{BIN_WS}" within 0.5 seconds after event "t:place-end"', "holds"),
+    ("then", f'"{CUBE}" is located at "{BIN_WS}" for 0.5 seconds after event "t:place-end"', "holds"),
     ("then", f'"{CUBE}" is located at "{OTHER_WS}" after event "t:place-end"', "violated"),
     ("then", 'the lamp is green after event "t:place-end"', "unknown"),
     ("then", f'"{CUBE}" is located at "any of [\'{OTHER_WS}\', \'{BIN_WS}\']" after event "t:place-end"', "holds"),
     ("then", f'not ( "{CUBE}" is held by "{PANDA}" after event "t:place-end" )', "holds"),
     ("then", f'"{PANDA}" does not collide "{BIN_WS}" from "t:pick-start" until "t:place-end"', "holds"),
-    ("then", f'"{CUBE}" is located at "env:bench_ws" within 1 seconds before event "t:pick-start"', "holds"),
+    ("then", f'"{CUBE}" is located at "env:bench_ws" for 1 seconds before event "t:pick-start"', "holds"),
 )
 SET_UP = replace(SCENE, config=(ConfigSpec(CUBE, "mass", "0.04"),))
 STEPS = tuple((role, text) for role, text, _ in CLAUSES)

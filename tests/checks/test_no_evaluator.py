@@ -42,11 +42,11 @@ def test_a_predicate_of_the_catalog_needs_nothing() -> None:
 @pytest.mark.parametrize(
     ("model", "step", "is_judged"),
     [
-        (PRED, 'within {seconds:g} seconds after event "{event}"', False),
-        (PRED, '{o} is up within {seconds:g} seconds after event "{event}"', True),
-        (PRED, '"{o:Quoted}" is up within {seconds:g} seconds after event "{event:Quoted}"', True),
+        (PRED, 'for {seconds:g} seconds after event "{event}"', False),
+        (PRED, '{o} is up for {seconds:g} seconds after event "{event}"', True),
+        (PRED, '"{o:Quoted}" is up for {seconds:g} seconds after event "{event:Quoted}"', True),
         (PRED, '{o} is up after event "{event}"', False),
-        (PRED, '{o} is down within {seconds:g} seconds after event "{event}"', False),
+        (PRED, '{o} is down for {seconds:g} seconds after event "{event}"', False),
         (TEXT, 'It is up after event "{event}"', True),
         (TEXT, 'It is up before event "{event}"', False),
     ],

@@ -26,7 +26,7 @@ def at(word: str, text: str = MODEL) -> str:
 
 def test_a_clause_tells_its_sentence_its_meaning_and_when_it_is_judged() -> None:
     found = at("in-$0tray: holds")
-    assert "> `<part>` is located at `<goal>` 0.5 seconds after place-end" in found
+    assert "> `<part>` is located at `<goal>` for 0.5 seconds after place-end" in found
     assert load_catalog().predicates["located-at"].doc in found
     assert "a margin in m" in found
     assert "Judged throughout the 0.5 s that begin at `place-end`." in found
@@ -92,6 +92,8 @@ def test_elements_tell_what_simulates_them() -> None:
         ("before <pick-start>)", "be$0fore <pick-start>)", "Judged at the last sample at or before `pick-start`."),
         ("before <pick-start>)", "2 sec$0onds before <pick-start>)", "Judged throughout the 2 s that end at"),
         ("before <pick-start>)", "fr$0om <pick-start> until <end>)", "from `pick-start` until `end`, both included"),
+        ("before <pick-start>)", "with$0in 2 seconds before <pick-start>)", "at some time in the 2 s that end at"),
+        ("before <pick-start>)", "at so$0me time from <pick-start> until <end>)", "it must hold at some time."),
     ],
 )
 def test_a_time_constraint_tells_when_it_is_judged(old: str, new: str, meaning: str) -> None:

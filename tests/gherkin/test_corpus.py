@@ -44,7 +44,7 @@ def seen(scenario: Read) -> Seen:
     """
     written = scenario.steps[[text for _, text in scenario.steps].index("the scene is set up") + 1 :]
     written = [(role, text.replace(ANY_PLACE, ANY_PLACE.removesuffix("any of "))) for role, text in written]
-    steps = tuple((role, re.sub(r'^"[^"]*"(?= has config )| within \S+ seconds', "", text)) for role, text in written)
+    steps = tuple((role, re.sub(r'^"[^"]*"(?= has config )| for \S+ seconds', "", text)) for role, text in written)
     return frozenset((title, rows) for title, rows in tables(scenario).items() if title != OBJECTS), steps
 
 

@@ -11,7 +11,8 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Story
 def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:
     text = feature(MODEL)
     assert text.startswith(
-        """@story=https:;;example.org;t;fetching
+        """# wording: 2
+@story=https:;;example.org;t;fetching
 Feature: t:fetching
   As a operator
   I want parts fetched
@@ -41,7 +42,7 @@ Feature: t:fetching
     Given the scene is set up
     Given "env:bolt" is located at "env:bench_ws" before event "t:pick-start"
     When "env:panda" picks "env:bolt" and places it at "env:bench_ws"
-    Then "env:bolt" is located at "env:bench_ws" within 0.5 seconds after event "t:place-end"
+    Then "env:bolt" is located at "env:bench_ws" for 0.5 seconds after event "t:place-end"
 """
     )
     assert text.count("Scenario:") == 4
@@ -78,7 +79,7 @@ def test_a_variants_clauses_follow_the_templates_in_each_role() -> None:
         'Given "env:bolt" is located at "env:bench_ws" before event "t:pick-start"',
         'Given "env:panda" can reach "env:bolt" before event "t:start"',
         'When "env:panda" picks "env:bolt" and places it at "env:bench_ws"',
-        'Then "env:bolt" is located at "env:bench_ws" within 0.5 seconds after event "t:place-end"',
+        'Then "env:bolt" is located at "env:bench_ws" for 0.5 seconds after event "t:place-end"',
         'Then "env:bolt" is held by "env:panda" from "t:pick-start" until "t:place-end"',
     ]
 

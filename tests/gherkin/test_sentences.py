@@ -29,7 +29,7 @@ def then(clauses: str, model: str = MODEL) -> list[str]:
         ),
         (
             "c: holds(<robot> does not collide <goal>, 2 seconds before <end>)",
-            '"env:panda" does not collide "env:bench_ws" within 2 seconds before event "t:end"',
+            '"env:panda" does not collide "env:bench_ws" for 2 seconds before event "t:end"',
         ),
         (
             "c: holds(pred('the {x} glows', x=<part>), after <end>)",
@@ -46,7 +46,7 @@ def test_a_configuration_has_its_value() -> None:
     model = edited("var part\n", "var part\n    var speed\n")
     model = edited("var <fetch.part>", "var <fetch.speed>: { 0.9, 1 }\n                var <fetch.part>", model)
     clause = "c: holds(<robot> has config speed = <speed>, 0.1234567 seconds after <end>)"
-    sentence = '"env:panda" has config "speed" = "0.9" within 0.1234567 seconds after event "t:end"'
+    sentence = '"env:panda" has config "speed" = "0.9" for 0.1234567 seconds after event "t:end"'
     assert then(clause, model) == [f"Then {sentence}"]
 
 

@@ -39,8 +39,8 @@ def test_behave_finds_one_function_for_every_step(tmp_path: Path) -> None:
     functions = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
     for function in functions[1:]:
         assert ast.unparse(function.args).startswith("context: Context")
-    within = next(function for function in functions if "within" in function.name)
-    assert ast.unparse(within.args).endswith("seconds: float")
+    throughout = next(function for function in functions if "_for_seconds" in function.name)
+    assert ast.unparse(throughout.args).endswith("seconds: float")
 
 
 def test_what_a_file_defines_is_left_as_it_is() -> None:

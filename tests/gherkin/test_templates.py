@@ -46,7 +46,7 @@ def test_a_template_may_change_one_block_of_ours(tmp_path: Path) -> None:
         tmp_path,
         "{% extends 'compact.feature.jinja' %}\n{% block feature %}# by me\n{{ super() }}{% endblock %}",
     )
-    assert text.startswith("# by me\n@story=")
+    assert text.startswith("# by me\n# wording: 2\n@story=")
     assert "Scenario Outline:" in text
     assert len(read_by_behave(text)) == 4
 
@@ -159,7 +159,7 @@ def test_the_compact_template_writes_scenarios_where_a_table_would_not_do(values
 
 def test_the_german_template_has_german_keywords_and_the_same_sentences() -> None:
     text = feature(MODEL, "de")
-    assert text.startswith("# language: de\n")
+    assert text.startswith("# language: de\n# wording: 2\n")
     for keyword in ("Funktionalität: ", "Grundlage:", "Szenario: ", "Angenommen ", "Wenn ", "Dann "):
         assert keyword in text
     assert steps(MODEL)[0].removeprefix("Given ") in text

@@ -91,6 +91,14 @@ def test_a_behaviour_carries_its_agent_its_targets_and_its_duration() -> None:
                 'time:horizon-seconds "2.0"^^<http://www.w3.org/2001/XMLSchema#double>',
             ],
         ),
+        (
+            "within 2 seconds before <end>",
+            [
+                "a time:BeforeEventConstraint",
+                "time:before-event t:end",
+                'time:horizon-seconds "2.0"^^<http://www.w3.org/2001/XMLSchema#double>',
+            ],
+        ),
     ],
 )
 def test_a_time_constraint_stands_on_the_node_of_its_clause(written: str, stated: list[str]) -> None:
@@ -98,6 +106,7 @@ def test_a_time_constraint_stands_on_the_node_of_its_clause(written: str, stated
     about_time = [line for line in of(graph, "t:f") if "time:" in line and "TimeConstraint" not in line]
     assert about_time == stated
     assert "a time:TimeConstraint" in of(graph, "t:f")
+    assert ("a rbw:AtSomeTime" in of(graph, "t:f")) == written.startswith("within")
 
 
 @pytest.mark.parametrize(

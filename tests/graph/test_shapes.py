@@ -66,6 +66,7 @@ DAMAGE: dict[str, list[str]] = {
                          "+ lab:bench_scene-scene-has-obj bdd:of-scene t:sort-scene"],
     "object-members": ["+ lab:bench_scene-scene-has-obj env:has-object lab:panda"],
     "object-value": [f"set {TABLE} bdd:rows ((lab:panda lab:panda lab:tray_ws 1 ()))"],
+    "some-time": ["+ t:at a rbw:AtSomeTime"],
     "policy-clause": [*EXECUTION, "- t:watch bdd:of-clause"],
     "product-sets": [f"- {PRODUCT} bdd:of-sets"],
     "product-width": [f"set {PRODUCT} bdd:of-sets ((lab:nut) (lab:panda))"],

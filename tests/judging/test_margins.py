@@ -80,7 +80,7 @@ def test_what_lies_in_a_corner_where_no_hand_fits_is_not_reached() -> None:
 
 def test_reach_is_measured_throughout_a_window_and_only_there() -> None:
     run = execution([pick_place()])
-    clause = read_clause(f'"{PANDA}" can reach "{CUBE}" within 0.2 seconds before event "t:pick-start"')
+    clause = read_clause(f'"{PANDA}" can reach "{CUBE}" for 0.2 seconds before event "t:pick-start"')
     trace = run.measured(clause, run.advance_until(lambda _: False))
     margins = trace.reaches[PANDA, CUBE]
     start = trace.event_time("t:pick-start")

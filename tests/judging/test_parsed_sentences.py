@@ -24,14 +24,31 @@ def fluent(text: str) -> Fluent:
     [
         ('before event "t:e"', Before("t:e")),
         ('after event "t:e"', After("t:e")),
-        ('within 0.5 seconds before event "t:e"', Before("t:e", 0.5)),
-        ('within 2 seconds after event "t:e"', After("t:e", 2.0)),
-        ('within 1e-05 seconds after event "t:e"', After("t:e", 1e-05)),
+        ('for 0.5 seconds before event "t:e"', Before("t:e", 0.5)),
+        ('for 2 seconds after event "t:e"', After("t:e", 2.0)),
+        ('for 1e-05 seconds after event "t:e"', After("t:e", 1e-05)),
         ('from "t:a" until "t:b"', During("t:a", "t:b")),
+        ('at some time within 2 seconds after event "t:e"', After("t:e", 2.0, some_time=True)),
+        ('at some time within 2 seconds before event "t:e"', Before("t:e", 2.0, some_time=True)),
+        ('at some time from "t:a" until "t:b"', During("t:a", "t:b", some_time=True)),
     ],
 )
 def test_reads_every_time_constraint(words: str, constraint: TimeConstraint) -> None:
     assert fluent(f"{AT} {words}").time == constraint
+
+
+def test_within_means_throughout_in_the_first_wording_and_nothing_in_the_second() -> None:
+    text = f'{AT} within 2 seconds after event "t:e"'
+    found = read_clause(text, 1)
+    assert isinstance(found, Fluent)
+    assert found.time == After("t:e", 2.0)
+    assert read_clause(text, 2) == Text(text)
+    group = read_clause(f"not ( {text} )", 2)
+    assert isinstance(group, Junction)
+    assert group.operands == (Text(text),)
+    free = 'the lamp is on within 2 seconds after event "t:e"'
+    assert read_clause(free, 2) == Text(free)
+    assert read_clause(free, 1) == Text("the lamp is on", After("t:e", 2.0))
 
 
 def test_reads_sets_and_existential_choices_inside_the_quotes() -> None:

@@ -100,7 +100,7 @@ def test_free_text_is_judged_by_a_policy() -> None:
 
 
 def test_a_text_keeps_its_horizon_when_a_policy_judges_it() -> None:
-    text = 'the cube is near within 0.15 seconds after event "t:a"'
+    text = 'the cube is near for 0.15 seconds after event "t:a"'
     assert judged(spec_of(), moving([0.2, 0.9, 0.2]), text).outcome is Outcome.VIOLATED
     assert judged(spec_of(), moving([0.2, 0.2, 0.9]), text).outcome is Outcome.HOLDS
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import nan
 from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
@@ -92,10 +93,11 @@ MARGINS = st.integers(-16, 16).map(lambda number: number / 8)
 def stories(draw: st.DrawFn, *, events_on_samples: bool) -> Story:
     """Traces of two things; events may be missing, or come twice, unless they are to lie on samples.
 
-    There, each occurs once in each iteration.
+    There, each occurs once in each iteration. Else some margins are missing.
     """
     count = draw(st.integers(1, 12))
-    paths = {name: draw(st.lists(MARGINS, min_size=count, max_size=count)) for name in ("x", "y")}
+    margins = MARGINS if events_on_samples else st.one_of(*[MARGINS] * 7, st.just(nan))
+    paths = {name: draw(st.lists(margins, min_size=count, max_size=count)) for name in ("x", "y")}
     instants = st.integers(0, count - 1).map(lambda row: row * STEP)
     if events_on_samples:
         return Story(paths, tuple((name, draw(instants), number) for name in EVENTS for number in ITERATIONS))
@@ -112,10 +114,11 @@ _HORIZON = st.none() | st.integers(0, 8).map(lambda steps: steps * STEP)
 
 def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
     number = st.sampled_from(iterations)
+    some_time = st.booleans()
     return (
-        st.builds(Before, _EVENT, _HORIZON, number)
-        | st.builds(After, _EVENT, _HORIZON, number)
-        | st.builds(During, _EVENT, _EVENT, st.tuples(number, number))
+        st.builds(Before, _EVENT, _HORIZON, number, some_time)
+        | st.builds(After, _EVENT, _HORIZON, number, some_time)
+        | st.builds(During, _EVENT, _EVENT, st.tuples(number, number), some_time)
     )
 
 

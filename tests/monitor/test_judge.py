@@ -114,3 +114,33 @@ def test_one_more_sample_never_raises_robustness(values: list[float], extra: flo
     assert shorter is not None
     assert longer is not None
     assert longer <= shorter
+
+
+def at_some_time(values: list[float], horizon: float) -> Verdict:
+    trace = trace_of({"ball": heights(values)}, {"start": 0.1})
+    return judge(ABOVE, {"thing": "ball"}, After("start", horizon, some_time=True), trace, {})
+
+
+def test_at_some_time_holds_with_the_largest_margin_and_says_when_it_first_held() -> None:
+    found = at_some_time([0.5, -0.3, 0.1, 0.2, -0.1], 0.3)
+    assert (found.outcome, found.robustness, found.unit) == (Outcome.HOLDS, 0.2, "m")
+    assert (found.at, found.worst_at) == (pytest.approx(0.2), pytest.approx(0.3))
+    assert found.reason == "first held at 0.20 s, 0.20 s before the window closes"
+
+
+def test_at_some_time_is_violated_when_the_window_has_closed() -> None:
+    found = at_some_time([0.5, -0.3, -0.1, -0.2, 0.4], 0.2)
+    assert (found.outcome, found.robustness) == (Outcome.VIOLATED, -0.1)
+    assert (found.at, found.worst_at) == (pytest.approx(0.3), pytest.approx(0.2))
+    assert found.reason == "it held at no time until 0.30 s, and was closest at 0.20 s"
+
+
+@pytest.mark.parametrize("values", [[0.5, -0.3, -0.1], [0.5, -0.3, float("nan"), -0.1, -0.1, -0.1]])
+def test_at_some_time_is_unknown_while_a_part_of_the_window_may_still_hold(values: list[float]) -> None:
+    assert at_some_time(values, 0.3).outcome is Outcome.UNKNOWN
+
+
+@pytest.mark.parametrize("values", [[0.5, -0.3, 0.1], [0.5, -0.3, float("nan"), 0.1, -0.1, -0.1]])
+def test_at_some_time_holds_whatever_is_not_known_if_it_held_once(values: list[float]) -> None:
+    found = at_some_time(values, 0.3)
+    assert (found.outcome, found.robustness) == (Outcome.HOLDS, 0.1)

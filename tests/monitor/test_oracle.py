@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isnan
 
 import pytest
 from hypothesis import given, settings
@@ -43,7 +44,10 @@ def occurrence(story: Story, event: str, iteration: int) -> float | None:
 
 
 def in_window(time: TimeConstraint, story: Story, samples: list[float]) -> list[int] | None:
-    """Rows of the samples of a window; ``None`` where the page says *unknown*."""
+    """Rows of the samples of a window; ``None`` where the page says *unknown*.
+
+    If it is enough that the predicate holds at some time, the samples of a window beyond the trace count, too.
+    """
 
     def between(low: float, high: float) -> list[int]:
         return [row for row, t in enumerate(samples) if low - TOLERANCE <= t <= high + TOLERANCE]
@@ -51,17 +55,42 @@ def in_window(time: TimeConstraint, story: Story, samples: list[float]) -> list[
     match time:
         case Before(event, horizon, k):
             t = occurrence(story, event, k)
-            if t is None or (horizon is not None and t - horizon < -TOLERANCE):
+            if t is None or (horizon is not None and t - horizon < -TOLERANCE and not time.some_time):
                 return None
             return between(0.0, t)[-1:] if horizon is None else between(t - horizon, t)
         case After(event, horizon, k):
             t = occurrence(story, event, k)
-            if t is None or max(samples) < t + (horizon or 0.0) - TOLERANCE:
+            if t is None or (max(samples) < t + (horizon or 0.0) - TOLERANCE and not time.some_time):
                 return None
             return between(t, float("inf"))[:1] if horizon is None else between(t, t + horizon)
         case During(start, end, (first, last)):
             a, b = occurrence(story, start, first), occurrence(story, end, last)
             return None if a is None or b is None or b < a else between(a, b)
+
+
+def whole_window(time: TimeConstraint, story: Story, samples: list[float]) -> bool:
+    """Whether the trace covers the window from its beginning to its end."""
+    match time:
+        case Before(event, float(horizon), k):
+            return (occurrence(story, event, k) or 0.0) - horizon >= -TOLERANCE
+        case After(event, horizon, k):
+            return max(samples) >= (occurrence(story, event, k) or 0.0) + (horizon or 0.0) - TOLERANCE
+        case _:
+            return True
+
+
+def at_some_time(time: TimeConstraint, story: Story, margins: dict[int, float], samples: list[float]) -> Answer:
+    """The page's verdict where it is enough that the predicate holds at some time in the window."""
+    known = {row: value for row, value in margins.items() if not isnan(value)}
+    if not known:
+        return UNKNOWN
+    most = max(known.values())
+    best = next(samples[row] for row in known if known[row] == most)
+    if most >= 0:
+        return Answer("holds", most, next(samples[row] for row in known if known[row] >= 0), best)
+    if len(known) < len(margins) or not whole_window(time, story, samples):
+        return UNKNOWN
+    return Answer("violated", most, samples[max(known)], best)
 
 
 def fluent(clause: Holds, story: Story) -> Answer:
@@ -70,6 +99,10 @@ def fluent(clause: Holds, story: Story) -> Answer:
     if not rows or clause.thing not in story.paths:
         return UNKNOWN
     margins = {row: story.paths[clause.thing][row] for row in rows}
+    if clause.time.some_time:
+        return at_some_time(clause.time, story, margins, samples)
+    if any(isnan(value) for value in margins.values()):
+        return UNKNOWN
     least = min(margins.values())
     worst = next(samples[row] for row in rows if margins[row] == least)
     if least >= 0:
@@ -112,4 +145,5 @@ def test_outcome_margin_and_instants_are_those_of_the_page(clause: Clause, story
 @given(CLAUSES, stories(events_on_samples=False))
 def test_what_is_unknown_has_a_reason_and_what_is_not_has_a_margin(clause: Clause, story: Story) -> None:
     found = by_the_monitor(clause, story)
-    assert bool(found.reason) == (found.robustness is None) == (str(found.outcome) == "unknown")
+    assert (found.robustness is None) == (str(found.outcome) == "unknown")
+    assert found.reason or found.robustness is not None

@@ -23,6 +23,8 @@ def steps(horizon: float | None) -> str:
 
 def formula(clause: Clause) -> str:
     match clause:
+        case Holds(thing, time) if time.some_time:
+            return f"eventually({when(time)} and ({thing} >= 0))"
         case Holds(thing, time):
             return f"always({when(time)} implies ({thing} >= 0))"
         case Joined("not", (part,)):
@@ -89,6 +91,9 @@ def test_robustness_is_that_of_signal_temporal_logic(clause: Clause, story: Stor
         After("a", 0.2, 1),
         During("a", "b", (1, 1)),
         During("a", "b", (1, 2)),
+        Before("a", 0.2, 2, some_time=True),
+        After("a", 0.2, 1, some_time=True),
+        During("a", "b", (1, 2), some_time=True),
     ],
 )
 def test_every_kind_of_window_is_compared(time: TimeConstraint) -> None:

@@ -120,8 +120,8 @@ def test_margins_are_read_in_everyday_units(robustness: float | None, unit: str,
             "[a, b] are sorted into any of [w] after e",
         ),
         (
-            '"e:r" has config "ee_speed" = "0.6" within 0.5 seconds before event "t:e"',
-            "r has config ee_speed = 0.6 within 0.5 seconds before e",
+            '"e:r" has config "ee_speed" = "0.6" for 0.5 seconds before event "t:e"',
+            "r has config ee_speed = 0.6 for 0.5 seconds before e",
         ),
     ],
 )

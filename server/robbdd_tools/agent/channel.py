@@ -1,23 +1,28 @@
-"""The channel for messages of a run. It leads to the parent process, or nowhere if behave is run by hand."""
+"""The channel for messages of a run. It leads to the parent process, or to the terminal if behave is run by hand."""
 
 from __future__ import annotations
 
 import os
+import sys
 from threading import Lock
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent import stack_dumps
-from robbdd_tools.protocol.messages import ScenarioFinished, ScenarioStarted, encode
+from robbdd_tools.base.printable import printable
+from robbdd_tools.protocol.messages import LogLine, ScenarioFinished, ScenarioStarted, encode
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
 
 
 class Channel:
-    """Drops all messages."""
+    """Prints warnings and errors to standard error, and drops all other messages, which behave prints itself."""
 
     def send(self, message: RunMessage) -> None:
-        """Drop a message."""
+        """Print or drop a message."""
+        # behave captures sys.stderr.
+        if isinstance(message, LogLine) and message.level != "info" and sys.__stderr__ is not None:
+            print(f"{message.level}: {printable(message.text)}", file=sys.__stderr__)
 
 
 class Lines(Channel):

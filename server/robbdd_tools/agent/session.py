@@ -10,10 +10,11 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.feature_wording import feature_wording, remarks_on_wording
 from robbdd_tools.agent.printed_output import finish_output
 from robbdd_tools.agent.shared_executions import SharedExecutions, call_of, calls_of, timing_of
 from robbdd_tools.agent.violation_states import ViolationStates
-from robbdd_tools.judging.decisions import NO_STEP, decide, is_closed
+from robbdd_tools.judging.decisions import decide, is_closed, no_step
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
@@ -34,6 +35,7 @@ from robbdd_tools.protocol.messages import (
     judged,
 )
 from robbdd_tools.protocol.run_folder import curves_file, trace_file
+from robbdd_tools.protocol.time_words import WORDING
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import write_trace
 from robbdd_tools.user_code.calls import fault_of
@@ -67,6 +69,7 @@ class ScenarioRun:
         moments: ViolationStates,
         keep: Path | None = None,
         courses: SharedExecutions | None = None,
+        wording: int = WORDING,
     ) -> None:
         self._index = index
         self._spec = spec
@@ -74,7 +77,8 @@ class ScenarioRun:
         self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._known = {clause.line: clause for clause in spec.clauses}
-        steps = {line: stated_by_step(role, text, self._known.get(line)) for line, role, text in texts}
+        self._wording = wording
+        steps = {line: stated_by_step(role, text, self._known.get(line), wording) for line, role, text in texts}
         self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
         self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}
         self._texts = {line for line, step in steps.items() if isinstance(step, Text)}
@@ -92,6 +96,9 @@ class ScenarioRun:
         self._faults: set[str] = set()
         self._began = perf_counter()
         channel.send(ScenarioStarted(index))
+        edited = [text for line, _, text in texts if text != self._open.get(line)]
+        for remark in remarks_on_wording(edited, wording):
+            channel.send(LogLine("warning", f"{spec.name}: {remark}"))
 
     def set_up(self) -> None:
         """Build the scene, unless it is already built. Raises ``SceneError``."""
@@ -131,7 +138,7 @@ class ScenarioRun:
 
     def clause(self, line: int, text: str) -> Verdict:
         """Simulate as far as is necessary to judge a Given or Then clause, and judge it."""
-        clause = self._clauses.get(line) or read_clause(text)
+        clause = self._clauses.get(line) or read_clause(text, self._wording)
 
         def verdict(execution: Execution) -> Verdict:
             events = self._spec.events.keys()
@@ -148,7 +155,7 @@ class ScenarioRun:
 
         def verdict(execution: Execution) -> Verdict:
             if index is None:
-                return unknown(f"{NO_STEP} for '{text}'", Cause.NO_STEP)
+                return unknown(no_step(text), Cause.NO_STEP)
             done, place = execution.run_behaviour(index), execution.chosen(index)
             if done:
                 return Verdict(Outcome.HOLDS, reason=f"placed at {place}" if place else "")
@@ -194,7 +201,7 @@ class ScenarioRun:
             if line in self._texts and isinstance(self._clauses[line], Fluent):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
-            left = unknown(f"{NO_STEP} for '{sentence}'", Cause.NO_STEP)
+            left = unknown(no_step(sentence), Cause.NO_STEP)
             self._report(line, _unknown(self._broken) if self._broken else left)
         execution = self._execution
         if self._viewer is not None:
@@ -320,7 +327,8 @@ class Session:
         self._moments.clear(index)
         spec = self._manifest.scenarios[index]
         keep = self._folder if self._manifest.traces else None
-        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep, self._courses)
+        wording = feature_wording(feature)
+        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep, self._courses, wording)
 
     @property
     def scenario(self) -> ScenarioRun:

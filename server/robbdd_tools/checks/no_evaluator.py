@@ -12,6 +12,7 @@ from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.step_files import may_define
 from robbdd_tools.names.index import language_of
+from robbdd_tools.protocol.time_words import instant_words, interval_words
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -97,14 +98,9 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 def _sentence(clause: FreeClause) -> str:
     """Return the sentence of a step for a clause: its text as in a feature, with sample words for events and values."""
     stated = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
-    match clause.time:
-        case tree.During():
-            return f'{stated} from "x" until "x"'
-        case tree.Before(horizon=horizon):
-            return f'{stated} {_within(horizon)}before event "x"'
-        case tree.After(horizon=horizon):
-            return f'{stated} {_within(horizon)}after event "x"'
-
-
-def _within(horizon: tree.Number | None) -> str:
-    return "" if horizon is None else f"within {horizon.value:g} seconds "
+    time = clause.time
+    if isinstance(time, tree.During):
+        return f"{stated} {interval_words('x', 'x', time.some_time)}"
+    relation = "before" if isinstance(time, tree.Before) else "after"
+    seconds = None if time.horizon is None else f"{time.horizon.value:g}"
+    return f"{stated} {instant_words(relation, 'x', seconds, time.some_time)}"

@@ -22,23 +22,30 @@ def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
 
 
 def time_words(time: tree.TimeConstraint) -> str:
-    """Return a time constraint as written."""
+    """Return a time constraint as it ends a sentence."""
     if isinstance(time, tree.During):
-        return f"from {time.start.path} until {time.end.path}"
+        return f"{'at some time ' if time.some_time else ''}from {time.start.path} until {time.end.path}"
     word = "before" if isinstance(time, tree.Before) else "after"
-    horizon = "" if time.horizon is None else f"{time.horizon.value} seconds "
+    lead = "at some time within " if time.some_time else "for "
+    horizon = "" if time.horizon is None else f"{lead}{time.horizon.value} seconds "
     return f"{horizon}{word} {time.event.path}"
 
 
 def time_meaning(time: tree.TimeConstraint) -> str:
     """Describe the samples of a trace at which a clause with this time constraint is judged."""
     if isinstance(time, tree.During):
-        return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold throughout."
+        must = "at some time" if time.some_time else "throughout"
+        return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold {must}."
     side = "at or before" if isinstance(time, tree.Before) else "at or after"
     which = "last" if isinstance(time, tree.Before) else "first"
     if time.horizon is None:
         return f"Judged at the {which} sample {side} `{time.event.path}`."
     ends = "that end at" if isinstance(time, tree.Before) else "that begin at"
+    if time.some_time:
+        return (
+            f"It must hold at some time in the {time.horizon.value} s {ends} `{time.event.path}`. The margin is the "
+            "largest in this time; the result says when it first held and how much time was left."
+        )
     return f"Judged throughout the {time.horizon.value} s {ends} `{time.event.path}`."
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
@@ -23,7 +23,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.time import During, TimeConstraint
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.specs import plain_name
 
@@ -173,13 +173,10 @@ class Binder:
         return self.filler(values.get(term, term) if isinstance(term, Iri) else term)
 
     def _time(self, clause: Fluent | TextFluent | TextClause) -> TimeConstraint:
-        match clause.time:
-            case During(start, end):
-                return During(self.curie(start), self.curie(end))
-            case Before(event, horizon):
-                return Before(self.curie(event), horizon)
-            case After(event, horizon):
-                return After(self.curie(event), horizon)
+        time = clause.time
+        if isinstance(time, During):
+            return replace(time, start=self.curie(time.start), end=self.curie(time.end))
+        return replace(time, event=self.curie(time.event))
 
     def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:
         """Return the values of a clause's variables and slots, by name."""

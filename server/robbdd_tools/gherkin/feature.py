@@ -14,6 +14,7 @@ from robbdd_tools.gherkin.scenario_outline import Outline, outline, variable_nam
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Clause, Iri, Story, Variant
+from robbdd_tools.protocol.time_words import WORDING
 
 Numbered = tuple[int, Binding]
 """The number of a scenario within its variation, from 1, and its values."""
@@ -21,7 +22,10 @@ Numbered = tuple[int, Binding]
 
 @dataclass(frozen=True, slots=True)
 class StoryHeader:
-    """The text above the scenarios of a story. ``background`` holds the scene tables that all scenarios share."""
+    """The text above the scenarios of a story.
+
+    ``background`` holds the scene tables that all scenarios share. ``wording`` is the version of the sentences.
+    """
 
     name: str
     iri: Iri
@@ -30,6 +34,7 @@ class StoryHeader:
     benefit: str
     tags: tuple[str, ...]
     background: tuple[SceneTable, ...]
+    wording: int = WORDING
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,8 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.time import Before, During, TimeConstraint
+from robbdd_tools.protocol.time_words import instant_words, interval_words
 
 HEAD = '''"""Steps of {name} for a robot or simulator of your own."""
 
@@ -141,17 +142,11 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
 
 
 def _time(constraint: TimeConstraint) -> str:
-    match constraint:
-        case During():
-            return 'from "{start}" until "{end}"'
-        case Before(_, horizon):
-            return f'{_within(horizon)}before event "{{event}}"'
-        case After(_, horizon):
-            return f'{_within(horizon)}after event "{{event}}"'
-
-
-def _within(horizon: float | None) -> str:
-    return "" if horizon is None else "within {seconds:g} seconds "
+    if isinstance(constraint, During):
+        return interval_words("{start}", "{end}", constraint.some_time)
+    relation = "before" if isinstance(constraint, Before) else "after"
+    seconds = None if constraint.horizon is None else "{seconds:g}"
+    return instant_words(relation, "{event}", seconds, constraint.some_time)
 
 
 def _pattern(role: str, sentence: str) -> Pattern:

@@ -19,8 +19,8 @@ from robbdd_tools.graph.acceptance_model import (
     Iri,
     Junction,
 )
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.protocol import clauses as stated
+from robbdd_tools.protocol.time_words import time_words
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
@@ -96,10 +96,10 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
     """Return the sentence of a statement. ``within`` is true if the sentence is a part of a group."""
     match statement:
         case stated.Fluent(predicate, arguments, time):
-            return f"{filled(predicate.sentence, arguments)} {_time_words(time)}"
+            return f"{filled(predicate.sentence, arguments)} {time_words(time)}"
         case stated.Text(words, time):
             shown = text.in_group(words) if within else words
-            return shown if time is None else f"{shown} {_time_words(time)}"
+            return shown if time is None else f"{shown} {time_words(time)}"
         case stated.Junction("not", operands):
             return f"not ( {sentence(operands[0], within=True)} )"
         case stated.Junction(operator, operands):
@@ -108,17 +108,3 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
             return filled(behaviour.sentence, arguments)
         case stated.EventOccurrence(event):
             return f'event "{event}" occurs'
-
-
-def _time_words(constraint: TimeConstraint) -> str:
-    match constraint:
-        case During(start, end):
-            return f'from "{start}" until "{end}"'
-        case Before(event, horizon):
-            return f'{_within(horizon)}before event "{event}"'
-        case After(event, horizon):
-            return f'{_within(horizon)}after event "{event}"'
-
-
-def _within(horizon: float | None) -> str:
-    return "" if horizon is None else f"within {repr(horizon).removesuffix('.0')} seconds "

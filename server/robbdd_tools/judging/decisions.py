@@ -15,6 +15,7 @@ from robbdd_tools.monitor.time import NoWindow, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
 from robbdd_tools.monitor.verdict import Cause, Verdict, conjunction, disjunction, negation, unknown
 from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, Junction, Text, fluents_of
+from robbdd_tools.protocol.time_words import AMBIGUOUS
 from robbdd_tools.user_code.calls import UserCodeError, fault_of
 
 if TYPE_CHECKING:
@@ -43,9 +44,19 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
                 verdicts = [decided(operand) for operand in operands]
                 return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
             case Text(words):
-                return unknown(f"{NO_STEP} for '{words}'", Cause.NO_STEP)
+                return unknown(no_step(words), Cause.NO_STEP)
 
     return decided(clause)
+
+
+def no_step(words: str) -> str:
+    """Return the reason why a sentence that no step judges is unknown."""
+    found = AMBIGUOUS.search(words)
+    if found is None:
+        return f"{NO_STEP} for '{words}'"
+    seconds = found["horizon"]
+    meant = f"write 'for {seconds} seconds', or 'at some time within {seconds} seconds'"
+    return f"{NO_STEP} for '{words}': {meant}"
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:

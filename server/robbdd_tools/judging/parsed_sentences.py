@@ -8,7 +8,6 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.protocol.clauses import (
     AnyOf,
     BehaviourCall,
@@ -20,16 +19,11 @@ from robbdd_tools.protocol.clauses import (
     Statement,
     Text,
 )
+from robbdd_tools.protocol.time_words import FIRST_WORDING, TIME, WORDING, constraint_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Behaviour, Predicate, Slot
 
-TIME = (
-    r"(?:(?:within (?P<horizon>\d+(?:\.\d+)?(?:e[+-]?\d+)?) seconds )?"
-    r'(?P<relation>before|after) event "(?P<event>[^"]*)"'
-    r'|from "(?P<start>[^"]*)" until "(?P<end>[^"]*)")'
-)
-"""A time constraint at the end of a sentence."""
 NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
 """A negation, and an alternative or enumeration."""
 OCCURS = r'event "(?P<event>[^"]*)" occurs'
@@ -54,13 +48,13 @@ def fluent_pattern(predicate: Predicate) -> str:
     return f"{sentence_pattern(predicate.sentence)} {TIME}"
 
 
-def read_step(role: str, text: str) -> Statement | None:
-    """Return the statement of a step's sentence.
+def read_step(role: str, text: str, wording: int = WORDING) -> Statement | None:
+    """Return the statement of a step's sentence in a feature with this version of the wording.
 
     Returns ``None`` for a When step that contains neither a behaviour of the catalog nor an event.
     """
     if role != "when":
-        return read_clause(text)
+        return read_clause(text, wording)
     if (match := re.fullmatch(OCCURS, text)) is not None:
         return EventOccurrence(match["event"])
     for behaviour, pattern in _behaviours():
@@ -69,26 +63,31 @@ def read_step(role: str, text: str) -> Statement | None:
     return None
 
 
-def read_clause(text: str) -> Clause:
-    """Parse the sentence of a Given or Then step; never raises."""
+def read_clause(text: str, wording: int = WORDING) -> Clause:
+    """Parse the sentence of a Given or Then step; never raises.
+
+    A time constraint that the version of the wording no longer has is part of a text, which nothing judges.
+    """
     for predicate, pattern in _fluents():
-        if (match := pattern.fullmatch(text)) is not None:
-            return Fluent(predicate, _fillers(match, predicate.slots), _time(match))
+        if (match := pattern.fullmatch(text)) is not None and _understood(match, wording):
+            return Fluent(predicate, _fillers(match, predicate.slots), constraint_of(match))
     if (match := re.fullmatch(NOT, text)) is not None and _balanced(match["inner"]):
-        return Junction("not", (read_clause(match["inner"]),))
+        return Junction("not", (read_clause(match["inner"], wording),))
     inner = text
     if (match := re.fullmatch(GROUP, text)) is not None and _balanced(match["inner"]):
         inner = match["inner"]
     for operator in ("and", "or"):
         parts = _split(inner, f" {operator} ")
-        operands = tuple(read_clause(part) for part in parts) if len(parts) > 1 else ()
+        operands = tuple(read_clause(part, wording) for part in parts) if len(parts) > 1 else ()
         # Without parentheses, "and" and "or" may be words of free text.
         if operands and (inner != text or not any(isinstance(operand, Text) for operand in operands)):
             return Junction(operator, operands)
     if inner != text:
-        return read_clause(inner)
+        return read_clause(inner, wording)
     match = re.fullmatch(rf"(?P<words>.*?) {TIME}", text)
-    return Text(text) if match is None else Text(match["words"], _time(match))
+    if match is None or not _understood(match, wording):
+        return Text(text)
+    return Text(match["words"], constraint_of(match))
 
 
 def unescaped(text: str) -> str:
@@ -125,11 +124,9 @@ def _filler(text: str) -> Filler:
     return AnyOf(elements) if some else elements
 
 
-def _time(match: re.Match[str]) -> TimeConstraint:
-    if match["start"] is not None:
-        return During(match["start"], match["end"])
-    horizon = float(match["horizon"]) if match["horizon"] is not None else None
-    return Before(match["event"], horizon) if match["relation"] == "before" else After(match["event"], horizon)
+def _understood(match: re.Match[str], wording: int) -> bool:
+    """Return whether the version of the wording has the time constraint of a sentence."""
+    return match["lead"] != "within" or wording == FIRST_WORDING
 
 
 def _balanced(text: str) -> bool:

@@ -10,6 +10,7 @@ from robbdd_tools.judging.parsed_sentences import read_step
 from robbdd_tools.judging.policies import with_policies
 from robbdd_tools.monitor.time import in_iterations
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Junction
+from robbdd_tools.protocol.time_words import FIRST_WORDING, WORDING
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.clauses import Clause, Statement
@@ -21,18 +22,18 @@ def statement_of(known: ClauseSpec) -> Statement | None:
 
     If an earlier version stored the sentence only, the sentence is parsed.
     """
-    return known.statement or _with_iris(read_step(known.role, known.sentence), known)
+    return known.statement or _with_iris(read_step(known.role, known.sentence, FIRST_WORDING), known)
 
 
-def stated_by_step(role: str, text: str, known: ClauseSpec | None) -> Statement | None:
+def stated_by_step(role: str, text: str, known: ClauseSpec | None, wording: int = WORDING) -> Statement | None:
     """Return the statement of a step.
 
     This is the statement of ``known``, the clause of the step's line. If the sentence was edited, the sentence is
-    parsed.
+    parsed by the version ``wording`` of the feature.
     """
     if known is None:
-        return read_step(role, text)
-    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text), known)
+        return read_step(role, text, wording)
+    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text, wording), known)
 
 
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:

@@ -51,6 +51,8 @@ def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margi
     """
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
     selected = window(constraint, trace)
+    if isinstance(selected, NoWindow) and constraint.some_time and selected.recorded is not None:
+        selected = selected.recorded
     if isinstance(selected, NoWindow):
         return _drawn(replace(found, reason=selected.reason), trace.times, whole)
     rows = slice(selected.first, selected.last + 1)

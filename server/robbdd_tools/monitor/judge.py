@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, closing_time, window
 from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Outcome, Verdict, unknown
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
 T = TypeVar("T")
+NOT_A_NUMBER = "the margin is not a number at some sample"
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 """Workspace → its regions, each with the object whose frame it is in."""
 
@@ -131,22 +132,28 @@ def judge(
 ) -> Verdict:
     """Judge ``holds(predicate(arguments), constraint)``.
 
-    ρ = min over the window of the margin; *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no
-    window, no evaluator or no record of an argument.
+    ρ is the smallest margin in the window or, if the constraint requires the predicate at some time only, the largest;
+    *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an
+    argument.
     """
     if predicate.evaluate is None:
         return unknown(f"there is no evaluator for '{predicate.name}'", Cause.NO_STEP)
     selected = window(constraint, trace)
-    if isinstance(selected, NoWindow):
-        if selected.empty:
-            return unknown(selected.reason, Cause.EMPTY, EMPTY_WINDOW)
-        return unknown(selected.reason, Cause.NO_EVENT)
-    evidence = WindowEvidence(trace, selected, regions)
+    missing = selected if isinstance(selected, NoWindow) else None
+    rows = selected.recorded if isinstance(selected, NoWindow) else selected
+    if missing is not None and (rows is None or not constraint.some_time):
+        if missing.empty:
+            return unknown(missing.reason, Cause.EMPTY, EMPTY_WINDOW)
+        return unknown(missing.reason, Cause.NO_EVENT)
+    assert rows is not None
+    evidence = WindowEvidence(trace, rows, regions)
     try:
         margins = predicate.evaluate(evidence, arguments)
         unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
+    if constraint.some_time:
+        return _some_time_verdict(margins, evidence.times, unit, closing_time(constraint, trace), missing)
     return _verdict(margins, evidence.times, unit)
 
 
@@ -169,10 +176,34 @@ def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regio
 
 def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:
     if not np.all(np.isfinite(margins)):
-        return unknown("the margin is not a number at some sample", Cause.NO_RECORD)
+        return unknown(NOT_A_NUMBER, Cause.NO_RECORD)
     worst = int(np.argmin(margins))
     robustness, worst_at = float(margins[worst]), float(times[worst])
     if robustness >= 0:
         return Verdict(Outcome.HOLDS, robustness, unit, worst_at, worst_at=worst_at)
     first = int(np.argmax(margins < 0))
     return Verdict(Outcome.VIOLATED, robustness, unit, float(times[first]), worst_at=worst_at)
+
+
+def _some_time_verdict(
+    margins: FloatArray, times: FloatArray, unit: str, closing: float | None, missing: NoWindow | None
+) -> Verdict:
+    """Return the verdict on a predicate that must hold at some sample.
+
+    ``closing`` is the time (s) at which the window closes. ``missing`` is set if the trace lacks a part of the window.
+    Then, and if some margin is not a number, the verdict is unknown unless the predicate already holds at some sample.
+    """
+    finite = np.isfinite(margins)
+    best = int(np.argmax(np.where(finite, margins, -np.inf)))
+    robustness, best_at = float(margins[best]), float(times[best])
+    if finite[best] and robustness >= 0:
+        first = float(times[int(np.argmax(finite & (margins >= 0)))])
+        left = "" if closing is None else f", {max(closing - first, 0.0):.2f} s before the window closes"
+        return Verdict(Outcome.HOLDS, robustness, unit, first, f"first held at {first:.2f} s{left}", best_at)
+    if missing is not None:
+        return unknown(missing.reason, Cause.NO_EVENT)
+    if not np.all(finite):
+        return unknown(NOT_A_NUMBER, Cause.NO_RECORD)
+    end = float(times[-1])
+    reason = f"it held at no time until {end:.2f} s, and was closest at {best_at:.2f} s"
+    return Verdict(Outcome.VIOLATED, robustness, unit, end, reason, best_at)

@@ -18,36 +18,41 @@ TOLERANCE = 1e-9
 class Before:
     """At the last sample at or before ``event``, or throughout the ``horizon`` (s) that ends at it.
 
-    ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``.
+    ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``. ``some_time`` is true if the
+    predicate must hold at some sample of the window instead of at all of them.
     """
 
     event: str
     horizon: float | None = None
     iteration: int = 0
+    some_time: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class After:
     """At the first sample at or after ``event``, or throughout the ``horizon`` (s) that starts at it.
 
-    ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``.
+    ``iteration`` and ``some_time`` have the same meaning as in ``Before``.
     """
 
     event: str
     horizon: float | None = None
     iteration: int = 0
+    some_time: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class During:
     """From event ``start`` until event ``end``, both included.
 
-    ``iterations`` selects the occurrences of start and end, as in ``Trace.event_time``.
+    ``iterations`` selects the occurrences of start and end, as in ``Trace.event_time``. ``some_time`` has the same
+    meaning as in ``Before``.
     """
 
     start: str
     end: str
     iterations: tuple[int, int] = (0, 0)
+    some_time: bool = False
 
 
 TimeConstraint = Before | After | During
@@ -66,12 +71,13 @@ class NoWindow:
     """A constraint has no window; ``reason`` says why.
 
     ``open`` is true if a longer trace may still have the window. ``empty`` is true if the window is closed but contains
-    no sample.
+    no sample. ``recorded`` are the samples of the window that the trace has, if the window reaches beyond the trace.
     """
 
     reason: str
     open: bool
     empty: bool = False
+    recorded: Window | None = None
 
 
 def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
@@ -107,6 +113,15 @@ def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
             return (start, first), (end, last)
 
 
+def closing_time(constraint: TimeConstraint, trace: Trace) -> float | None:
+    """Return the time (s) at which the window of a time constraint closes; ``None`` if its event has not occurred."""
+    event, iteration = occurrences(constraint)[-1]
+    time = trace.event_time(event, iteration)
+    if time is None or not isinstance(constraint, After):
+        return time
+    return time + (constraint.horizon or 0.0)
+
+
 def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
     """Return a time constraint with the occurrences of events to which a clause refers.
 
@@ -130,10 +145,8 @@ def _before(trace: Trace, event: str, horizon: float | None, iteration: int) -> 
     if horizon is None:
         return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False, True)
     if time - horizon < -TOLERANCE:
-        return NoWindow(
-            f"event {event} occurred at {time:.2f} s, less than {horizon:g} s after the execution began",
-            False,
-        )
+        reason = f"event {event} occurred at {time:.2f} s, less than {horizon:g} s after the execution began"
+        return NoWindow(reason, False, recorded=_between(0, last))
     return _closed(trace.first_at_or_after(time - horizon - TOLERANCE), last)
 
 
@@ -145,7 +158,7 @@ def _after(trace: Trace, event: str, horizon: float | None, iteration: int) -> W
     end = time + (horizon or 0.0)
     if first >= len(trace.times) or trace.times[-1] < end - TOLERANCE:
         reason = f"the execution ended at {trace.end:.2f} s, before {end:.2f} s when the window closes"
-        return NoWindow(reason, not trace.finished)
+        return NoWindow(reason, not trace.finished, recorded=_between(first, len(trace.times) - 1))
     if horizon is None:
         return Window(first, first)
     return _closed(first, trace.last_at_or_before(end + TOLERANCE))
@@ -164,7 +177,11 @@ def _during(trace: Trace, start: str, end: str, iterations: tuple[int, int]) -> 
 
 
 def _closed(first: int, last: int) -> Window | NoWindow:
-    return Window(first, last) if first <= last else NoWindow("no sample was taken in the window", False, True)
+    return _between(first, last) or NoWindow("no sample was taken in the window", False, True)
+
+
+def _between(first: int, last: int) -> Window | None:
+    return Window(first, last) if first <= last else None
 
 
 def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:

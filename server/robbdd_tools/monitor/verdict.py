@@ -68,9 +68,11 @@ class Verdict:
 
     - ``robustness``: the signed margin in ``unit``; positive if the clause holds; ``None`` if unknown.
     - ``at``: the instant (s) of the violation, which is the first sample with a negative margin. If the clause holds,
-      it is the instant of the smallest margin; if it is unknown, ``None``.
-    - ``worst_at``: the instant (s) of the smallest margin, also for a violation.
-    - ``reason``: why the clause is violated or unknown, in words.
+      it is the instant of the smallest margin; if it is unknown, ``None``. A predicate that must hold at some time only
+      is violated at the last sample of the window, and holds at the first sample with a margin of at least 0.
+    - ``worst_at``: the instant (s) of the margin, also for a violation.
+    - ``reason``: why the clause is violated or unknown, in words. For a predicate that must hold at some time only,
+      when it first held.
     - ``cause``: the type of the reason of an unknown verdict.
     - ``vacuous``: why the clause could not have been violated; empty if it could.
     - ``fault``: the error in users' code that prevented the evidence.

@@ -169,24 +169,26 @@ def _filler(value: Any) -> Filler:
 
 
 def _plain_time(time: TimeConstraint) -> dict[str, Any]:
+    some_time = {"some_time": True} if time.some_time else {}
     match time:
         case During(start, end):
-            return {"from": start, "until": end}
+            return {"from": start, "until": end, **some_time}
         case Before(event, horizon):
-            return {"before": event, "horizon": horizon}
+            return {"before": event, "horizon": horizon, **some_time}
         case After(event, horizon):
-            return {"after": event, "horizon": horizon}
+            return {"after": event, "horizon": horizon, **some_time}
 
 
 def _time(data: Mapping[str, Any] | None) -> TimeConstraint | None:
+    if data is None:
+        return None
+    some_time = bool(data.get("some_time", False))
     match data:
-        case None:
-            return None
         case {"from": str(start), "until": str(end)}:
-            return During(start, end)
+            return During(start, end, some_time=some_time)
         case {"before": str(event), "horizon": horizon}:
-            return Before(event, horizon)
+            return Before(event, horizon, some_time=some_time)
         case {"after": str(event), "horizon": horizon}:
-            return After(event, horizon)
+            return After(event, horizon, some_time=some_time)
         case _:
             raise ValueError(f"{data!r} is not a time constraint")

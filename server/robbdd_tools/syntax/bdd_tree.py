@@ -41,24 +41,27 @@ class ConstantSet(Node):
 
 @dataclass(frozen=True, slots=True)
 class During(Node):
-    """``from <start> until <end>``."""
+    """``[at some time] from <start> until <end>``."""
 
     start: Ref
     end: Ref
+    some_time: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Before(Node):
-    """``[h seconds] before <event>``."""
+    """``[[within] h seconds] before <event>``. ``some_time`` is true after ``within``."""
 
+    some_time: bool
     horizon: Number | None
     event: Ref
 
 
 @dataclass(frozen=True, slots=True)
 class After(Node):
-    """``[h seconds] after <event>``."""
+    """``[[within] h seconds] after <event>``. ``some_time`` is true after ``within``."""
 
+    some_time: bool
     horizon: Number | None
     event: Ref
 

@@ -63,9 +63,6 @@ _NEAR_MISSES = (
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
     NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),
     NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
-    NearMiss(
-        r"", r"within\s+(?=\d)", "remove 'within': '0.5 seconds after <event>' means the same", "after", lambda _: ""
-    ),
     NearMiss(r"", r";", "no line ends with ';': remove it", fix=lambda _: ""),
     NearMiss(r"", r"=", "write ':' instead of '='", ":", lambda _: ":"),
     NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r":\s*[\w\-]+", "variables have no declared type: remove it", fix=lambda _: ""),

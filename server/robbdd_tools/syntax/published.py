@@ -119,7 +119,7 @@ def _duration(behaviour: BehaviourUse, body: Body) -> During | None:
     while_it_lasts = [time for time in _times(body.then) if isinstance(time, During)]
     start = before[:1] or [time.start for time in while_it_lasts[:1]]
     end = after[:1] or [time.end for time in while_it_lasts[:1]]
-    return During(behaviour.span, start[0], end[0]) if start and end else None
+    return During(behaviour.span, start[0], end[0], some_time=False) if start and end else None
 
 
 def _times(expression: Expression | None) -> Iterator[TimeConstraint]:

@@ -138,6 +138,8 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
         ("UnnamedFluent", "BareFluent"),
         lambda raw, span, text: _by_fields(tree.Fluent, raw, span, text, name=unnamed_at(span)),
     ),
+    "During": _given(tree.During, some_time=False),
+    "SomeTime": _given(tree.During, some_time=True),
     "BareBehaviour": _bare_behaviour,
     "HeadedVariation": _inner("variation"),
     "ListedProduct": _given(tree.Product),

@@ -21,7 +21,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, expand
+from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, SOME_TIME, expand
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -123,11 +123,13 @@ class ClauseReader:
         before, after = (self.records.all(iri, f"time:{side}-event") for side in ("before", "after"))
         horizon = self.records.literal(iri, "time:horizon-seconds")
         seconds = float(horizon) if isinstance(horizon, int | float) else None
+        some_time = self.records.is_a(iri, SOME_TIME)
         if before and after:
-            return During(self.records.one(iri, "time:after-event"), self.records.one(iri, "time:before-event"))
+            start, end = self.records.one(iri, "time:after-event"), self.records.one(iri, "time:before-event")
+            return During(start, end, some_time=some_time)
         if before:
-            return Before(self.records.one(iri, "time:before-event"), seconds)
-        return After(self.records.one(iri, "time:after-event"), seconds)
+            return Before(self.records.one(iri, "time:before-event"), seconds, some_time=some_time)
+        return After(self.records.one(iri, "time:after-event"), seconds, some_time=some_time)
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:

@@ -76,8 +76,10 @@ class ClauseText:
     def time(self, time: TimeConstraint) -> str:
         """Return a time constraint as text."""
         if isinstance(time, During):
-            return f"from {self._event(time.start)} until {self._event(time.end)}"
+            lead = "at some time " if time.some_time else ""
+            return f"{lead}from {self._event(time.start)} until {self._event(time.end)}"
         horizon = "" if time.horizon is None else f"{str(time.horizon).removesuffix('.0')} seconds "
+        horizon = f"within {horizon}" if horizon and time.some_time else horizon
         return f"{horizon}{'before' if isinstance(time, Before) else 'after'} {self._event(time.event)}"
 
     def _event(self, event: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, TIME_TYPES
+from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, SOME_TIME, TIME_TYPES
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
@@ -224,7 +224,8 @@ def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
     """Add a time constraint to the node that it constrains."""
     kind = type(time).__name__.lower()
     sink = frame.sink
-    sink.add_types(node, ["time:TimeConstraint", TIME_TYPES[kind]], frame.at(time))
+    some_time = [SOME_TIME] if time.some_time else []
+    sink.add_types(node, ["time:TimeConstraint", TIME_TYPES[kind], *some_time], frame.at(time))
     if isinstance(time, tree.During):
         sink.add(node, "time:after-event", frame.target(time.start), frame.at(time.start))
         sink.add(node, "time:before-event", frame.target(time.end), frame.at(time.end))
