@@ -33,6 +33,12 @@ def test_an_unknown_name_has_suggestions_of_which_one_mends_it() -> None:
     assert fixed(text, "setting") == model("ee_speed", "{ 0.25 }")
 
 
+def test_a_word_of_several_names_is_answered_with_what_each_applies_to() -> None:
+    (entry,) = found(model("speed", "{ 0.25 }"), "setting")
+    assert "did you mean 'ee_speed' (an agent), 'max_speed' (an agent), 'belt_speed' (a conveyor)" in entry.message
+    assert [fix.title for fix in entry.fixes][:3] == [f"Change to '{name}_speed'" for name in ("ee", "max", "belt")]
+
+
 def test_a_name_like_no_other_is_answered_with_all() -> None:
     (entry,) = found(model("zzz", "{ 1 }"), "setting")
     assert "the known ones are " in entry.message

@@ -120,9 +120,8 @@ PICKPLACE = {
 """Code → file of the example, a text in it and what takes its place; a second pair makes the rest fit."""
 
 
-@pytest.mark.parametrize("code", PICKPLACE)
-def test_a_planted_fault_is_found_before_the_run_that_it_spoils(code: str, tmp_path: Path) -> None:
-    folder = tmp_path / "pickplace"
+def planted(code: str, folder: Path) -> Path:
+    """Copy the example with a fault; return the file that shows it."""
     shutil.copytree(EXAMPLES / "pickplace", folder, ignore=shutil.ignore_patterns(".*"))
     name, old, new, (also, instead) = PICKPLACE[code]
     for path in folder.iterdir():
@@ -134,7 +133,12 @@ def test_a_planted_fault_is_found_before_the_run_that_it_spoils(code: str, tmp_p
         if code == "single-element" and path.suffix == ".bdd":
             text = text.replace("<balls.ball0> }", "<balls.ball0> } }").replace("{ { <cubes", "{ { <cubes")
         path.write_text(text, encoding="utf-8")
-    main = folder / ("pickplace.bddx" if name.endswith("x") else "pickplace.bdd")
+    return folder / ("pickplace.bddx" if name.endswith("x") else "pickplace.bdd")
+
+
+@pytest.mark.parametrize("code", PICKPLACE)
+def test_a_planted_fault_is_found_before_the_run_that_it_spoils(code: str, tmp_path: Path) -> None:
+    main = planted(code, tmp_path / "pickplace")
     findings = robbdd.load(main).diagnostics
     assert code in {finding.code for finding in findings}
     if any(finding.severity is Severity.ERROR for finding in findings):
@@ -142,3 +146,15 @@ def test_a_planted_fault_is_found_before_the_run_that_it_spoils(code: str, tmp_p
     reasons = unknown(main)
     assert any(re.search(KNOWN_BEFORE[code], reason) for reason in reasons), reasons
     assert_known(reasons)
+
+
+@pytest.mark.parametrize("code", sorted(PICKPLACE.keys() - {"catalog-entry"}))
+def test_the_fault_is_found_in_the_graph_of_the_model_too(code: str, tmp_path: Path) -> None:
+    main = planted(code, tmp_path / "pickplace")
+    graph = main.with_suffix(".ttl")
+    graph.write_text(robbdd.load(main).graph(), encoding="utf-8")
+    findings = robbdd.load(graph).diagnostics
+    assert {finding.code for finding in findings} == {code}
+    assert all(finding.place.line > 1 for finding in findings)
+    if code in ("no-model", "no-region", "execution-fit"):
+        assert_known(unknown(graph))

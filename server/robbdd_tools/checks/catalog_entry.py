@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
 
+CODE = "catalog-entry"
+
 
 def known_entries(language: str) -> Mapping[str, object]:
     """Return the entries that ``catalog "…"`` may name in a kind of file: behaviours in an execution, else models."""
@@ -36,10 +38,15 @@ def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
                 yield _unknown(file.document.uri, node.name, placed.offset, what, known)
 
 
+def not_in_catalog(what: str, name: str, known: Mapping[str, object]) -> tuple[str, list[str]]:
+    """Return the message on a name that the catalog lacks, and the most similar entries."""
+    close = get_close_matches(name, known, n=3, cutoff=0.6)
+    message = f"the catalog has no {what} '{name}'"
+    return message + (f"; did you mean '{close[0]}'?" if close else f": it has {', '.join(sorted(known))}"), close
+
+
 def _unknown(uri: str, name: tree.Text, offset: int, what: str, known: Mapping[str, object]) -> Diagnostic:
     span = name.span.shifted(offset)
-    close = get_close_matches(name.value, known, n=3, cutoff=0.6)
-    message = f"the catalog has no {what} '{name.value}'"
-    message += f"; did you mean '{close[0]}'?" if close else f": it has {', '.join(sorted(known))}"
+    message, close = not_in_catalog(what, name.value, known)
     fixes = tuple(Fix(f"Change to '{choice}'", (Edit(uri, span, f'"{choice}"'),)) for choice in close)
-    return Diagnostic(uri, span, Severity.ERROR, "catalog-entry", message, fixes=fixes)
+    return Diagnostic(uri, span, Severity.ERROR, CODE, message, fixes=fixes)

@@ -47,10 +47,20 @@ def _behaviour(site: Site, execution: tree.Execution) -> Iterator[Diagnostic]:
     executed = source.name.value
     wanted = [word for word in _behaviours(site, execution) if word != executed]
     if wanted and executed in load_catalog().behaviours:
-        message = f"'{executed}' of the catalog does not execute {listed(wanted)}, so that all clauses stay unknown"
+        message = not_executed(executed, wanted)
         related = (related_to(implementation, source, "the implementation"),)
         fix = change(implementation, f"Execute it by '{DOES_ALL}'", source.name, f'"{DOES_ALL}"')
         yield finding(site, execution.behaviour, Severity.WARNING, CODE, message, related, (fix,))
+
+
+def not_executed(behaviour: str, wanted: list[str]) -> str:
+    """Return the message on behaviours that a catalog behaviour does not execute."""
+    return f"'{behaviour}' of the catalog does not execute {listed(wanted)}, so that all clauses stay unknown"
+
+
+def not_two(observed: int) -> str:
+    """Return the message on a distance between another number of elements than two."""
+    return f"a distance is between two elements, but {observed} are observed"
 
 
 def _behaviours(site: Site, execution: tree.Execution) -> list[str]:
@@ -79,7 +89,7 @@ def _distance(site: Site, rule: tree.Evaluation) -> Iterator[Diagnostic]:
             return
         targets += ((observation, target) for target in observation.tree.targets)
     if len(targets) != 2:
-        message = f"a distance is between two elements, but {len(targets)} are observed"
+        message = not_two(len(targets))
         related = tuple(related_to(one, target, "observed") for one, target in targets)
         yield finding(site, rule.evaluator, Severity.WARNING, CODE, message, related)
     for observation, target in targets:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
 
+CODE = "model-file"
+
 
 def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each ``sys path`` without a file."""
@@ -25,13 +27,14 @@ def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         if not isinstance(placed.declaration.tree, tree.SceneInstance):
             continue
         for node in walk(placed.declaration.tree):
-            problem = _problem(own.parent, node.path.value) if isinstance(node, tree.SystemPath) else None
+            problem = missing_file(own.parent, node.path.value) if isinstance(node, tree.SystemPath) else None
             if isinstance(node, tree.SystemPath) and problem is not None:
                 span = node.path.span.shifted(placed.offset)
-                yield Diagnostic(file.document.uri, span, Severity.WARNING, "model-file", problem)
+                yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, problem)
 
 
-def _problem(folder: Path, path: str) -> str | None:
+def missing_file(folder: Path, path: str) -> str | None:
+    """Return the reason why a model file cannot be used; ``None`` if it can. Its path is relative to the folder."""
     missing = f"the model file '{path}' is not on this machine: put it there, or change the path, before a run with it"
     try:
         found = unreadable(folder / Path(path).expanduser())

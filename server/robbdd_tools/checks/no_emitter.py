@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -77,14 +77,22 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
         if event is None or emitters.emits(event):
             continue
         names = list(emitters.bound.values())
-        message = f"nothing emits '{ref.path}', so that its clause stays unknown: this scenario has {_listed(names)}"
-        if emitters.inner:
-            message += (
-                f", and its behaviours emit {_listed(list(emitters.inner))}, under these names or with 'emits … as'"
-            )
+        message = not_emitted(ref.path, names, emitters.inner)
         near = get_close_matches(ref.path, names, n=MAX_OFFERED, cutoff=0.0)
         fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
         yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)
+
+
+def not_emitted(event: str, bound: Iterable[str], inner: Iterable[str]) -> str:
+    """Return the message on an event that nothing emits.
+
+    ``bound`` are the events of durations, and ``inner`` those that the behaviours of the scenario emit.
+    """
+    message = f"nothing emits '{event}', so that its clause stays unknown: this scenario has {_listed(bound)}"
+    emitted = list(inner)
+    if emitted:
+        message += f", and its behaviours emit {_listed(emitted)}, under these names or with 'emits … as'"
+    return message
 
 
 def _events(node: tree.Node) -> Iterator[tree.Ref]:
@@ -102,5 +110,5 @@ def _key(event: Definition) -> Key:
     return event.uri, event.symbol.path
 
 
-def _listed(names: list[str]) -> str:
+def _listed(names: Iterable[str]) -> str:
     return ", ".join(f"'{name}'" for name in names) or "none"

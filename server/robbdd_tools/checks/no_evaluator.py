@@ -39,9 +39,14 @@ class Unjudged:
 def no_evaluator(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such clause at its text."""
     for found in unjudged(snapshot, file):
-        ways = "a step function or a policy in a .bddx" if isinstance(found.clause, tree.Fluent) else "a step function"
-        message = f"nothing judges this text, so the clause stays unknown: it needs {ways}"
+        message = needs_evaluator(may_have_policy=isinstance(found.clause, tree.Fluent))
         yield Diagnostic(file.document.uri, found.span, Severity.WARNING, CODE, message)
+
+
+def needs_evaluator(*, may_have_policy: bool) -> str:
+    """Return the message on a text that nothing evaluates."""
+    ways = "a step function or a policy in a .bddx" if may_have_policy else "a step function"
+    return f"nothing judges this text, so the clause stays unknown: it needs {ways}"
 
 
 def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
@@ -96,11 +101,21 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 
 def _sentence(clause: FreeClause) -> str:
-    """Return the sentence of a step for a clause: its text as in a feature, with sample words for events and values."""
-    stated = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
-    time = clause.time
+    return sample_sentence(text_of(clause).value, _time_words(clause.time))
+
+
+def _time_words(time: tree.TimeConstraint) -> str:
     if isinstance(time, tree.During):
-        return f"{stated} {interval_words('x', 'x', time.some_time)}"
+        return interval_words("x", "x", time.some_time)
     relation = "before" if isinstance(time, tree.Before) else "after"
     seconds = None if time.horizon is None else f"{time.horizon.value:g}"
-    return f"{stated} {instant_words(relation, 'x', seconds, time.some_time)}"
+    return instant_words(relation, "x", seconds, time.some_time)
+
+
+def sample_sentence(text: str, time: str) -> str:
+    """Return the sentence of a step for a text, as in a feature, with sample words for values.
+
+    ``time`` are the words of its time constraint, with sample words for events.
+    """
+    stated = _SLOT.sub('"x"', text.strip().replace("\\", "\\\\"))
+    return f"{stated} {time}"

@@ -5,7 +5,7 @@ A run cannot judge a scenario that uses the element. Other scenarios leave the e
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -147,24 +147,27 @@ def _keys(gap: Gap) -> set[Key]:
 def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[Diagnostic]:
     named = {gap.span: [_local(element) for element in gap.elements if element.key in keys] for gap in gaps}
     for gap in gaps:
-        own = named[gap.span]
         others = [name for span, names in named.items() if span != gap.span for name in names]
-        message = f"no model fits the name {listed(own)}"
-        if others:
-            message += f" (nor {', '.join(others)})"
-        if severity is Severity.WARNING:
-            message += f": it has none of the words {_words(gap)}; give it another name, or a model in a .scenex"
-            message += " that --scenex or an execution of a .bddx names"
-        else:
-            message += ": no scenario uses it, so runs omit it"
+        kinds = {element.kind for element in gap.elements}
+        message = without_model(named[gap.span], others, kinds, is_used=severity is Severity.WARNING)
         uri = gap.scene.uri
         related = tuple(Related(uri, other.span, "no model fits this name") for other in gaps if other.span != gap.span)
         yield Diagnostic(uri, gap.span, severity, CODE, message, related)
 
 
-def _words(gap: Gap) -> str:
+def without_model(own: list[str], others: list[str], kinds: Set[str], *, is_used: bool) -> str:
+    """Return the message on elements of some kinds without a model. ``others`` are reported elsewhere."""
+    message = f"no model fits the name {listed(own)}"
+    if others:
+        message += f" (nor {', '.join(others)})"
+    if not is_used:
+        return f"{message}: no scenario uses it, so runs omit it"
+    message += f": it has none of the words {_words(kinds)}; give it another name, or a model in a .scenex"
+    return f"{message} that --scenex or an execution of a .bddx names"
+
+
+def _words(kinds: Set[str]) -> str:
     catalog = load_catalog()
-    kinds = {element.kind for element in gap.elements}
     models = [*(catalog.objects.values() if "object" in kinds else ())]
     robots = [*(catalog.robots.values() if "agent" in kinds else ())]
     return ", ".join(sorted({word for model in (*models, *robots) for word in model.prefixes}))

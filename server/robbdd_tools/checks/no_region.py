@@ -36,13 +36,18 @@ def no_region(site: Site) -> Iterator[Diagnostic]:
             if element.kind != "workspace" or element.key in carried or element.key in reported:
                 continue
             reported.add(element.key)
-            message = (
-                f"no object of '{scenario.variant.scene.path}' carries '{element.name}', so that scenarios with it "
-                "stay unknown: add a composition of it, with its object, to the scene"
-            )
+            message = not_carried(scenario.variant.scene.path, element.name)
             target = site.target(scenario.variant.scene)
             related = () if target is None else (Related(target.uri, target.span, "the scene"),)
             yield finding(site, node, Severity.WARNING, CODE, message, related)
+
+
+def not_carried(scene: str, workspace: str) -> str:
+    """Return the message on a workspace that no object of a scene carries."""
+    return (
+        f"no object of '{scene}' carries '{workspace}', so that scenarios with it stay unknown: "
+        "add a composition of it, with its object, to the scene"
+    )
 
 
 def _carried(scene: Site | None) -> frozenset[Key] | None:

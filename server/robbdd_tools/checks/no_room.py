@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -19,11 +19,14 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import ObjectModel
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.elements import Element
     from robbdd_tools.names.project import Snapshot
 
 CODE = "no-room"
+ELSEWHERE = ": place the scene in a .scenex, or leave some out"
+"""How to make room."""
 Names = frozenset[str]
 
 
@@ -47,7 +50,14 @@ def _containers(scene: Site) -> Iterator[Diagnostic]:
         if element.kind == "object":
             elements.setdefault(element.name.rpartition(".")[2], element)
     found = {name: catalog.object_for(name, one.name.split(".")[:-1]) for name, one in elements.items()}
-    models = {name: model for name, model in found.items() if model is not None}
+    for error in crowded({name: model for name, model in found.items() if model is not None}):
+        yield Diagnostic(
+            scene.uri, place_of(scene, elements[error.name]), Severity.WARNING, CODE, f"{error}{ELSEWHERE}"
+        )
+
+
+def crowded(models: Mapping[str, ObjectModel]) -> Iterator[NoRoom]:
+    """Yield the first table, and the first container on the table, for which there is no room."""
     tables = [name for name, model in models.items() if not model.free]
     standing = [name for name, model in models.items() if model.free and not model.graspable]
     # With several tables, compositions assign objects to them; only a run checks the room.
@@ -56,8 +66,7 @@ def _containers(scene: Site) -> Iterator[Diagnostic]:
         try:
             list(at_places(models, names, where))
         except NoRoom as error:
-            message = f"{error}: place the scene in a .scenex, or leave some out"
-            yield Diagnostic(scene.uri, place_of(scene, elements[error.name]), Severity.WARNING, CODE, message)
+            yield error
 
 
 def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
@@ -68,11 +77,15 @@ def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
             continue
         agents = max(map(len, _agents(scenario)), default=0)
         if agents > SIDES:
-            message = (
-                f"this scenario uses {agents} agents, but there is room for {SIDES}, one at each side of the table: "
-                "place the others in a .scenex"
-            )
-            yield finding(site, scenario.variant.scene, Severity.WARNING, CODE, message)
+            yield finding(site, scenario.variant.scene, Severity.WARNING, CODE, too_many(agents))
+
+
+def too_many(agents: int) -> str:
+    """Return the message on a scenario with more agents than a table has sides."""
+    return (
+        f"this scenario uses {agents} agents, but there is room for {SIDES}, one at each side of the table: "
+        "place the others in a .scenex"
+    )
 
 
 def _agents(scenario: Scenario) -> Iterator[Names]:

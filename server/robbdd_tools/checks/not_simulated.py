@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 CODE = "not-simulated"
 _CATALOG = 'catalog "pick-place"'
 _GROUND_TRUTH = "simulation ground truth update-rate: 100 Hz"
+WITHOUT_MESSAGES = "policies that use its observations stay unknown; write 'simulation ground truth update-rate: … Hz'"
+"""The effect of a provider of ROS messages in a simulation, and its replacement."""
+WITHOUT_TOPIC = "the clause stays unknown if an execution uses this policy"
+"""The effect of a ROS topic with verdicts in a simulation."""
 
 
 def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -36,19 +40,20 @@ def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         yield Diagnostic(uri, node.span.shifted(placed.offset), Severity.INFORMATION, CODE, message, fixes=fixes)
 
 
-def _simulate(root: tree.Implementation) -> str:
-    return f"write '{_CATALOG}', or run with --bhv {root.name.text}=pick-place"
+def without_action(implementation: str) -> str:
+    """Return the effect of a ROS action in a simulation, and its replacement."""
+    simulated = f"write '{_CATALOG}', or run with --bhv {implementation}=pick-place"
+    return f"clauses stay unknown; to simulate it, {simulated}"
 
 
 def _ros(root: tree.ChunkTree | None) -> tuple[tree.Node, str, str, str] | None:
     """Return the ROS part of a declaration, its name, its effect in a simulation, and a replacement."""
     match root:
         case tree.Implementation(source=tree.RosAction() as source):
-            return source, "ROS action", f"clauses stay unknown; to simulate it, {_simulate(root)}", _CATALOG
+            return source, "ROS action", without_action(root.name.text), _CATALOG
         case tree.Provider(source=tree.RosTopic() | tree.Transforms() | tree.SimulatedStates() as source):
-            truth = "policies that use its observations stay unknown; write 'simulation ground truth update-rate: … Hz'"
-            return source, "ROS messages", truth, _GROUND_TRUTH
+            return source, "ROS messages", WITHOUT_MESSAGES, _GROUND_TRUTH
         case tree.Policy(rule=tree.TrinaryTopic() as rule):
-            return rule, "ROS topic", "the clause stays unknown if an execution uses this policy", ""
+            return rule, "ROS topic", WITHOUT_TOPIC, ""
         case _:
             return None

@@ -7,6 +7,7 @@ module may be installed on the machine that runs the model.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +29,15 @@ MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 
 
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A name of Python code that does not exist, with similar names. ``is_attribute`` if only the module exists."""
+
+    message: str
+    choices: tuple[str, ...] = ()
+    is_attribute: bool = False
+
+
 def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such name."""
     own = uri_to_path(file.document.uri)
@@ -35,14 +45,14 @@ def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         return
     for placed in file.declarations:
         for source in _sources(placed.declaration):
-            problem = _problem(source, own.parent)
+            problem = missing(source.module.text, source.attribute.text, own.parent)
             if problem is not None:
-                name, message, choices = problem
+                name = source.attribute if problem.is_attribute else source.module
                 span = name.span.shifted(placed.offset)
                 fixes = tuple(
-                    Fix(f"Change to '{choice}'", (Edit(file.document.uri, span, choice),)) for choice in choices
+                    Fix(f"Change to '{choice}'", (Edit(file.document.uri, span, choice),)) for choice in problem.choices
                 )
-                yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, message, fixes=fixes)
+                yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, problem.message, fixes=fixes)
 
 
 @kept_with_key
@@ -55,21 +65,20 @@ def _sources(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
     return tuple(node for node in walk(root) if isinstance(node, tree.PythonAttribute))
 
 
-def _problem(source: tree.PythonAttribute, folder: Path) -> tuple[tree.Name, str, list[str]] | None:
-    """Return the wrong name, a message and suggestions; ``None`` if the name exists."""
-    module, attribute = source.module.text, source.attribute.text
+def missing(module: str, attribute: str, folder: Path) -> Missing | None:
+    """Return the problem with the name of Python code for a file in a folder; ``None`` if the name exists."""
     spec = find_module(module, folder)
     if spec is None:
         near = _near(module, sorted(path.stem for path in folder.glob("*.py")))
         hint = f"; did you mean '{near[0]}'?" if near else f": put {_file(module)} next to this file"
-        return source.module, f"there is no module '{module}'{hint}", near
+        return Missing(f"there is no module '{module}'{hint}", tuple(near))
     found = module_names(spec)
     if found.error:
-        return source.module, f"the module '{module}' cannot be imported: {spec.origin}, {found.error}", []
+        return Missing(f"the module '{module}' cannot be imported: {spec.origin}, {found.error}")
     if found.is_complete and attribute not in found.names:
         near = _near(attribute, sorted(name for name in found.names if not name.startswith("_")))
         hint = f"; did you mean '{near[0]}'?" if near else ""
-        return source.attribute, f"the module '{module}' has no '{attribute}'{hint}", near
+        return Missing(f"the module '{module}' has no '{attribute}'{hint}", tuple(near), is_attribute=True)
     return None
 
 

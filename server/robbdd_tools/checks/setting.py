@@ -6,8 +6,9 @@ a scenario.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
@@ -31,6 +32,12 @@ _SHARED = frozenset({"position_range", "seed"})
 """Configurations that both agents and objects have."""
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
+MISSPELT = 0.8
+"""Minimum similarity of a misspelt name."""
+MAX_ALIKE = 5
+"""Maximum number of suggestions."""
+_WORD = re.compile(r"[a-z]{4,}")
+"""A word of a name that is long enough to be characteristic."""
 
 
 def setting(site: Site) -> Iterator[Diagnostic]:
@@ -61,11 +68,33 @@ def _uses(clauses: Clauses) -> Iterator[_Use]:
 
 
 def _unknown(site: Site, name: tree.Name) -> Diagnostic:
-    close = get_close_matches(name.text, SETTINGS, n=3, cutoff=MIN_ALIKE)
-    message = f"there is no configuration '{name.text}'"
-    message += f"; did you mean '{close[0]}'?" if close else f"; the known ones are {', '.join(SETTINGS)}"
+    message, close = unknown_setting(name.text)
     fixes = tuple(change(site, f"Change to '{found}'", name, found) for found in close)
     return finding(site, name, Severity.WARNING, CODE, message, fixes=fixes)
+
+
+def unknown_setting(name: str) -> tuple[str, list[str]]:
+    """Return the message on an unknown name, and the names of similar configurations, the most similar first."""
+    close = _similar(name)
+    message = f"there is no configuration '{name}'"
+    if not close:
+        return f"{message}; the known ones are {', '.join(SETTINGS)}", close
+    choices = [f"'{one}' ({setting_of(one).target})" for one in close]
+    *others, last = choices if len(choices) > 1 else [f"'{close[0]}'"]
+    return f"{message}; did you mean {', '.join(others)}{' or ' if others else ''}{last}?", close
+
+
+def _similar(name: str) -> list[str]:
+    """Return the configurations that a name resembles.
+
+    These are the ones with a word of the name, as ``ee_speed`` has of ``speed``, and those that it may misspell.
+    """
+    words = set(_WORD.findall(name.lower()))
+    shares = {one: bool(words & set(_WORD.findall(one))) for one in SETTINGS}
+    alike = {one: SequenceMatcher(None, name.lower(), one).ratio() for one in SETTINGS}
+    found = [one for one in SETTINGS if shares[one] or alike[one] >= MISSPELT]
+    found = found or [one for one in SETTINGS if alike[one] >= MIN_ALIKE]
+    return sorted(found, key=lambda one: (not shares[one], -alike[one]))[:MAX_ALIKE]
 
 
 def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -108,9 +137,8 @@ def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
         for site, name in targets.get(variable_key(column.variable), ()) if column.variable is not None else ():
             for written in column.written:
                 for node, element in written_elements(scenario.site, written):
-                    if not _has(element, name.text):
-                        what = f"'{element.name}' ({_kind(element)}) has no {name.text}"
-                        message = f"{what}: it applies to {setting_of(name.text).target}"
+                    if not may_have(element.kind, _model(element), name.text):
+                        message = not_configurable(element.name, _model(element), element.kind, name.text)
                         related = (related_to(site, name, "the configuration"),)
                         yield finding(scenario.site, node, Severity.WARNING, CODE, message, related)
 
@@ -120,18 +148,21 @@ def _model(element: Element) -> ObjectModel | None:
     return load_catalog().object_for(own, sets) if element.kind == "object" else None
 
 
-def _kind(element: Element) -> str:
-    model = _model(element)
-    return article(element.kind) if model is None else f"the model '{model.name}' of the catalog"
+def not_configurable(element: str, model: ObjectModel | None, kind: str, name: str) -> str:
+    """Return the message on an element without a configuration."""
+    what = article(kind) if model is None else f"the model '{model.name}' of the catalog"
+    return f"'{element}' ({what}) has no {name}: it applies to {setting_of(name).target}"
 
 
-def _has(element: Element, name: str) -> bool:
-    """Return whether an element may have a configuration. The models of a ``.scenex`` are known only in a run."""
-    match element.kind:
+def may_have(kind: str, model: ObjectModel | None, name: str) -> bool:
+    """Return whether an element may have a configuration of the catalog.
+
+    ``model`` is the catalog's model of an object. The models of a ``.scenex`` are known only in a run.
+    """
+    match kind:
         case "agent":
             return agent_has(name)
         case "object":
-            model = _model(element)
             return not (agent_has(name) and name not in _SHARED) if model is None else object_has(model, name)
         case "workspace":
             return name in _SHARED or not agent_has(name)

@@ -33,12 +33,17 @@ def single_element(site: Site) -> Iterator[Diagnostic]:
             target = site.target(ref)
             if target is None or target.kind is not SymbolKind.SET_VARIABLE:
                 continue
-            message = (
-                f"'{behaviour.name}' needs one {name}, but '{ref.path}' is a set: declare it as 'var', "
-                f"or write 'for all ( var x in <{ref.path}> ) {{ … }}' around the behaviour"
-            )
+            message = needs_one(behaviour.name, name, ref.path)
             related = (Related(target.uri, target.span, "declared as a set"),)
             yield finding(site, ref, Severity.WARNING, CODE, message, related)
+
+
+def needs_one(behaviour: str, slot: str, variable: str) -> str:
+    """Return the message on a set in a slot of a behaviour that needs a single element."""
+    return (
+        f"'{behaviour}' needs one {slot}, but '{variable}' is a set: declare it as 'var', "
+        f"or write 'for all ( var x in <{variable}> ) {{ … }}' around the behaviour"
+    )
 
 
 @kept_with_key

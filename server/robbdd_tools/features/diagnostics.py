@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks import run_checks
+from robbdd_tools.checks.graph_files import graph_findings
 from robbdd_tools.checks.superseded import without_superseded
 from robbdd_tools.features.fixes import with_fixes
 
@@ -52,11 +53,15 @@ def shape_diagnostics(
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
     from robbdd_tools.graph.shapes.validate import validate
     from robbdd_tools.graph.write.build import build_graph
+    from robbdd_tools.graph.write.foreign_imports import graph_format
 
     if snapshot.file(uri) is None:
         return []
     project = project_shapes(uri, shapes)
-    if validation is None:
+    if graph_format(uri):
+        built = build_graph(snapshot, uri)
+        found = [*validate(built, project=project), *graph_findings(built)]
+    elif validation is None:
         found = validate(build_graph(snapshot, uri, together), project=project)
     else:
         found = validation.run(snapshot, uri, project, is_superseded)

@@ -135,6 +135,17 @@ def every_clause(clauses: Iterable[Clause]) -> Iterator[Clause]:
                 pass
 
 
+def named_events(clause: Clause) -> Iterator[Iri]:
+    """Yield the events of a clause's time constraint, or the event of an event clause."""
+    if isinstance(clause, EventClause):
+        yield clause.event
+    time = getattr(clause, "time", None)
+    for name in ("event", "start", "end"):
+        event = getattr(time, name, None)
+        if event is not None:
+            yield Iri(event)
+
+
 def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
     """Yield the behaviours among clauses, at any depth."""
     return (clause for clause in every_clause(clauses) if isinstance(clause, BehaviourClause))

@@ -18,7 +18,6 @@ from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
     Cell,
     Clause,
-    EventClause,
     Execution,
     Fluent,
     ForAll,
@@ -27,6 +26,7 @@ from robbdd_tools.graph.acceptance_model import (
     SceneModel,
     Variant,
     every_clause,
+    named_events,
 )
 from robbdd_tools.graph.read.clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
@@ -294,18 +294,8 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
             bound |= {clause.start: first, clause.end: last}
             stated |= {event: moment for moment, event in clause.emits if moment in events}
     for clause in clauses:
-        for event in _named_events(clause):
+        for event in named_events(clause):
             name = stated.get(event) or inner_event(event, emitted)
             if name is not None:
                 bound.setdefault(event, name if linked is None else emitter(linked.node, name))
     return bound
-
-
-def _named_events(clause: Clause) -> Iterator[Iri]:
-    if isinstance(clause, EventClause):
-        yield clause.event
-    time = getattr(clause, "time", None)
-    for name in ("event", "start", "end"):
-        event = getattr(time, name, None)
-        if event is not None:
-            yield Iri(event)

@@ -98,4 +98,4 @@ def _names(model: AcceptanceModel, iri: str) -> set[str]:
 
 
 def _local(model: AcceptanceModel, iri: str) -> str:
-    return model.curie(iri).rpartition(":")[2]
+    return model.curie(iri).replace("/", ":").rpartition(":")[2]

@@ -35,13 +35,13 @@ def _nowhere(_: str) -> None:
     """Return no source position."""
 
 
-def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
+def read_model(graph: Graph, places: Places = _nowhere, records: Records | None = None) -> AcceptanceModel:
     """Return the acceptance criteria of a graph, in written order if the graph records this order.
 
-    ``places`` returns the source positions of nodes. A variant is left out if something is missing, for example its
-    template, the value of a variable or a known predicate.
+    ``places`` returns the source positions of nodes. ``records`` are those of the graph if they are known. A variant is
+    left out if something is missing, for example its template, the value of a variable or a known predicate.
     """
-    records = Records(graph)
+    records = records or Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     kinds = {node: kind for kind, type_ in ELEMENT_TYPES.items() for node in records.instances(type_)}
     stories = story_order(records)
@@ -52,9 +52,11 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
     return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees)
 
 
-def read_instances(graph: Graph, places: Places = _nowhere) -> tuple[SceneInstance, ...]:
-    """Return the scene instances of a graph, in the order of their IRIs."""
-    records = Records(graph)
+def read_instances(
+    graph: Graph, places: Places = _nowhere, records: Records | None = None
+) -> tuple[SceneInstance, ...]:
+    """Return the scene instances of a graph, in the order of their IRIs. ``records`` are those of the graph."""
+    records = records or Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = InstanceReader(records, sets, places)
     return tuple(reader.instance(node) for node in sorted(records.instances("rbw:SceneInstance")))

@@ -21,9 +21,8 @@ from robbdd_tools.graph.shapes.installed import load_shapes
 from robbdd_tools.graph.shapes.locality import is_local
 from robbdd_tools.graph.shapes.neighbourhood import Fingerprint, Identity, Neighbourhoods
 from robbdd_tools.graph.shapes.project_shapes import ProjectShapes, ShapeFile
-from robbdd_tools.graph.shapes.validate import NO_SHAPES, project_findings, together, validate
+from robbdd_tools.graph.shapes.validate import NO_SHAPES, project_findings, together
 from robbdd_tools.graph.write.build import build_declarations, build_graph
-from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.anchors import Anchored, Anchors
 
 if TYPE_CHECKING:
@@ -70,8 +69,6 @@ class Validation:
         Raises ``Superseded`` if a newer revision is waiting.
         """
         self.looked_at = 0
-        if graph_format(uri):
-            return validate(build_graph(snapshot, uri), project=project)
         local = self._local_files(project)
         around = Neighbourhoods(snapshot, uri)
         self._forget(around)

@@ -16,6 +16,7 @@ from robbdd_tools.graph.write.foreign_imports import graph_format, merge_imports
 from robbdd_tools.graph.write.foreign_namespaces import foreign_namespaces
 from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
 from robbdd_tools.graph.write.older_clauses import complete_clauses
+from robbdd_tools.graph.write.published_executions import complete_executions
 from robbdd_tools.graph.write.source_map import Location, SourceMap, SourceMapBuilder
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
     graph = merged.graph
     complete_clauses(graph)
+    complete_executions(graph)
     owners = _blank_owners(graph)
     places = graph_places(merged.documents, graph, owners)
     names = node_names(graph, owners)

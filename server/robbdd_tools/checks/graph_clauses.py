@@ -1,0 +1,118 @@
+"""Clauses of a graph that a run cannot judge: texts, events, configurations and sets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.step_files import may_define
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.event_names import inner_event
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.settings import SETTINGS, SettingError, setting_of
+from robbdd_tools.checks.graph_site import members, values_of
+from robbdd_tools.checks.no_emitter import CODE as NO_EMITTER
+from robbdd_tools.checks.no_emitter import not_emitted
+from robbdd_tools.checks.no_evaluator import CODE as NO_EVALUATOR
+from robbdd_tools.checks.no_evaluator import needs_evaluator, sample_sentence
+from robbdd_tools.checks.setting import CODE as SETTING
+from robbdd_tools.checks.setting import may_have, not_configurable, unknown_setting
+from robbdd_tools.checks.single_element import CODE as SINGLE_ELEMENT
+from robbdd_tools.checks.single_element import needs_one
+from robbdd_tools.graph.acceptance_model import (
+    BehaviourClause,
+    Fluent,
+    Iri,
+    TextClause,
+    TextFluent,
+    behaviour_clauses,
+    every_clause,
+    named_events,
+)
+from robbdd_tools.protocol.time_words import time_words
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.checks.graph_site import GraphSite
+    from robbdd_tools.graph.acceptance_model import Cell, Clause, Value, Variant
+
+
+def clause_findings(site: GraphSite) -> Iterator[Diagnostic]:
+    """Report the clauses of each variant that stay unknown in a run."""
+    for variant in site.variants:
+        clauses = tuple(every_clause((*variant.template.clauses, *variant.clauses)))
+        yield from _unjudged(site, clauses)
+        yield from _unemitted(site, variant, clauses)
+        for clause in clauses:
+            if isinstance(clause, BehaviourClause):
+                yield from _sets(site, variant, clause)
+            elif isinstance(clause, Fluent) and clause.predicate == "has-config":
+                yield from _configuration(site, variant, clause)
+
+
+def _unjudged(site: GraphSite, clauses: tuple[Clause, ...]) -> Iterator[Diagnostic]:
+    by_policy = {policy.clause for execution in site.model.executions for policy in execution.policies}
+    path = uri_to_path(site.built.uri)
+    for clause in clauses:
+        if not isinstance(clause, TextFluent | TextClause) or clause.iri in by_policy:
+            continue
+        text = clause.template if isinstance(clause, TextFluent) else clause.text
+        sentence = sample_sentence(text, time_words(clause.time))
+        if text.strip() and (path is None or not may_define(path, sentence)):
+            message = needs_evaluator(may_have_policy=isinstance(clause, TextFluent))
+            yield site.finding(clause.iri, NO_EVALUATOR, message)
+
+
+def _unemitted(site: GraphSite, variant: Variant, clauses: tuple[Clause, ...]) -> Iterator[Diagnostic]:
+    bound = dict.fromkeys((variant.template.start, variant.template.end))
+    inner: dict[str, None] = {}
+    for behaviour in behaviour_clauses(clauses):
+        events = load_catalog().behaviours[behaviour.behaviour].events
+        inner |= dict.fromkeys(events)
+        bound |= dict.fromkeys((behaviour.start, behaviour.end))
+        bound |= dict.fromkeys(event for moment, event in behaviour.emits if moment in events)
+    for clause in clauses:
+        for event in named_events(clause):
+            if event not in bound and inner_event(event, inner) is None:
+                message = not_emitted(site.name(event), map(site.name, bound), inner)
+                yield site.finding(clause.iri, NO_EMITTER, message)
+
+
+def _sets(site: GraphSite, variant: Variant, clause: BehaviourClause) -> Iterator[Diagnostic]:
+    behaviour = load_catalog().behaviours[clause.behaviour]
+    several = {variable for variable, cell in values_of(variant) if isinstance(cell, tuple)} | set(site.model.sets)
+    for slot in behaviour.slots:
+        term = clause.arguments.get(slot.name)
+        if slot.kind is not Kind.WORKSPACE and term in several:
+            message = needs_one(behaviour.name, slot.name, site.name(str(term)))
+            yield site.finding(clause.iri, SINGLE_ELEMENT, message)
+
+
+def _configuration(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagnostic]:
+    name = clause.arguments["name"]
+    if name not in SETTINGS:
+        yield site.finding(clause.iri, SETTING, unknown_setting(name)[0])
+        return
+    for cell in _given(variant, clause.arguments["value"]):
+        try:
+            setting_of(name).read(" ".join(str(value) for value in members(cell)))
+        except SettingError as error:
+            yield site.finding(clause.iri, SETTING, str(error))
+    for element in (value for cell in _given(variant, clause.arguments["target"]) for value in _elements(site, cell)):
+        kind = site.model.kinds.get(element, "")
+        model = site.object_model(element) if kind == "object" else None
+        if not may_have(kind, model, name):
+            message = not_configurable(site.local_name(element), model, kind, name)
+            yield site.finding(clause.iri, SETTING, message)
+
+
+def _given(variant: Variant, term: Iri | str) -> tuple[Cell, ...]:
+    """Return the values of a variable, or the term itself if it is no variable of the variation."""
+    values = tuple(dict.fromkeys(cell for variable, cell in values_of(variant) if variable == term))
+    return values or (term,)
+
+
+def _elements(site: GraphSite, cell: Cell) -> Iterator[Iri]:
+    values: tuple[Value, ...] = site.model.sets.get(cell, (cell,)) if isinstance(cell, Iri) else members(cell)
+    return (value for value in values if isinstance(value, Iri))
