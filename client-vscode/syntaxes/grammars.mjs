@@ -109,7 +109,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at"),
   phrases(`${PHRASE}.event`, "occurs"),
   { match: String.raw`(?<=>)\s*(at)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
-  phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until"),
+  phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever"),
   phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
   phrases("keyword.operator.wordlike", "and", "or", "not"),
   phrases(`${WORD}.story`, "As A", "As An", "I Want", "So That"),
@@ -220,7 +220,7 @@ const feature = grammar("Gherkin", "text.gherkin.robbdd", [
   { match: String.raw`^\s*(${STEP_WORDS})(?=\s)`, captures: { 1: { name: "keyword.control.step.robbdd" } } },
   { match: String.raw`"(?:[^"\\]|\\.)*"`, name: "string.quoted.double.robbdd" },
   { match: String.raw`(?<=\|)[^|]*(?=\|)`, name: "variable.other.constant.robbdd" },
-  { match: String.raw`(?<![\w-])(?:before|after) event|(?<![\w-])(?:at some time(?: within)?|within|for(?= [\d.]+(?:e[+-]?\d+)? seconds)|from|until)(?![\w-])`, name: `${WORD}.time.robbdd` },
+  { match: String.raw`(?<![\w-])(?:before|after) event|(?<![\w-])(?:whenever|at some time(?: within)?|within|for(?= [\d.]+(?:e[+-]?\d+)? seconds)|from|until)(?![\w-])`, name: `${WORD}.time.robbdd` },
 ]);
 
 export const grammars = { common, scene, bdd, scenex, bddx, feature };

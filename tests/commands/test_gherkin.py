@@ -100,7 +100,11 @@ def test_an_own_template_is_used_and_its_error_shown_at_its_line(folder: Path) -
     own = folder / "own.feature.jinja"
     own.write_text("{% extends 'default.feature.jinja' %}{% block feature %}# own\n{{ super() }}{% endblock %}")
     assert robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder).returncode == 0
-    assert (folder / "out" / "features" / "fetching.feature").read_text(encoding="utf-8").startswith("# own\n# wording: 2\n@story=")
+    assert (
+        (folder / "out" / "features" / "fetching.feature")
+        .read_text(encoding="utf-8")
+        .startswith("# own\n# wording: 2\n@story=")
+    )
     own.write_text("{% block scenario %}\n\n{{ scenario.colour }}{% endblock %}")
     done = robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder)
     assert done.returncode == 2

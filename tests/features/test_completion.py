@@ -86,6 +86,12 @@ def test_predicates_are_offered_as_whole_phrases() -> None:
     assert "is located at" in phrases
 
 
+def test_conditions_and_windows_are_offered_after_a_predicate() -> None:
+    assert "whenever" in labels(edited("<goal>, before", "<goal> $0, before"))
+    assert {"after", "at", "before", "from", "within"} <= set(labels(edited("before <pick-start>", "$0")))
+    assert "is held by" in labels(edited("<goal>, before", "<goal> whenever <part> $0, before"))
+
+
 def test_a_half_typed_keyword_is_replaced() -> None:
     (entry,) = at(edited("scene: <bench_scene>", "sce$0"))
     assert (entry.label, entry.text) == ("scene", "scene")

@@ -100,6 +100,15 @@ def test_a_time_constraint_tells_when_it_is_judged(old: str, new: str, meaning: 
     assert meaning in shown(MODEL.replace(old, new, 1))
 
 
+def test_a_clause_with_a_condition_tells_when_it_is_judged() -> None:
+    condition = "is located at <goal> whenever <part> is held by <robot>, from <start> until <end>)"
+    text = MODEL.replace("is located at <goal>, 0.5 seconds after <place-end>)", condition, 1)
+    assert text != MODEL
+    found = at("in-$0tray: holds", text)
+    assert "> `<part>` is located at `<goal>` whenever `<part>` is held by `<robot>` from start until end" in found
+    assert "Judged only at the samples at which this holds" in found
+
+
 def test_the_last_results_of_a_clause_are_shown_worst_first() -> None:
     case = fixture(MODEL)
     iri = "https://example.org/t/in-tray"

@@ -16,7 +16,18 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.steps import StepWriter
 from robbdd_tools.gherkin.variations import bindings
-from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Exists, Fluent, Iri, Junction, TextClause
+from robbdd_tools.graph.acceptance_model import (
+    AcceptanceModel,
+    Cell,
+    Clause,
+    Condition,
+    Exists,
+    Fluent,
+    Iri,
+    Junction,
+    TextClause,
+    TextFluent,
+)
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.judging.parsed_sentences import read_step
@@ -43,6 +54,16 @@ def located(time: TimeConstraint) -> Clause:
     return Fluent(NAME, "then", "located-at", {"object": THING, "workspace": PLACE}, time)
 
 
+def guarded(time: TimeConstraint) -> Clause:
+    condition = Condition(NAME, "held-by", {"object": THING, "agent": PLACE})
+    return Fluent(NAME, "then", "moves-safely", {"agent": THING}, time, condition)
+
+
+def guarded_text(text: str, time: TimeConstraint) -> Clause:
+    condition = Condition(NAME, "moves-safely", {"agent": THING})
+    return TextFluent(NAME, "then", text, {}, time, condition)
+
+
 def told(text: str, time: TimeConstraint) -> Clause:
     return TextClause(NAME, "then", text, time)
 
@@ -56,7 +77,12 @@ def junctions(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:
     return several | st.builds(junction, st.just("not"), st.lists(parts, min_size=1, max_size=1))
 
 
-SIMPLE: st.SearchStrategy[Clause] = st.builds(located, TIMES) | st.builds(told, TEXT, TIMES)
+SIMPLE: st.SearchStrategy[Clause] = (
+    st.builds(located, TIMES)
+    | st.builds(told, TEXT, TIMES)
+    | st.builds(guarded, TIMES)
+    | st.builds(guarded_text, st.sampled_from(["the lamp is on", 'it "is" on']), TIMES)
+)
 
 
 def bare(statement: Statement | None) -> object:
@@ -69,7 +95,7 @@ def bare(statement: Statement | None) -> object:
         case stated.Fluent() | stated.BehaviourCall():
             return replace(statement, iri="") if isinstance(statement, stated.Fluent) else statement
         case stated.Text(words, time):
-            return "text", _words(words), time
+            return "text", _words(words), time, statement.condition
         case _:
             return statement
 

@@ -38,6 +38,9 @@ Scenario Template (ns=t) fetch {
         ( var y exists in <goals> ) such that {
             ( placed: holds(<part> is located at <y>, 2 seconds after <place-end>)
               and clear: holds(<robot> does not collide <y>, from <start> until <end>)
+              and guarded: holds(<robot> does not collide <y> whenever <part> is held by <robot>,
+                                 from <start> until <end>)
+              and shown: holds(pred('{p} shines', p=<part>) whenever <part> is located at <y>, from <start> until <end>)
               and soon: holds(<part> is located at <y>, within 1.5 seconds after <place-end>)
               and once: holds(<part> is held by <robot>, at some time from <start> until <end>)
               and lately: holds(<part> is held by <robot>, within 2 seconds before <place-end>) )

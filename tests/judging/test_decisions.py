@@ -52,6 +52,32 @@ def a_trace(finished: bool = True) -> Trace:
             1.0,
         ),
         ('( the lamp is green or "ball" is held by "arm" after event "t:e" )', Outcome.HOLDS, 1.0),
+        ('"ball" is located at "left" whenever "ball" is held by "arm" after event "t:e"', Outcome.HOLDS, 0.08),
+        ('"ball" is located at "right" whenever "ball" is held by "arm" after event "t:e"', Outcome.VIOLATED, -0.9),
+        ('"ball" is located at "right" whenever "cube" is held by "arm" after event "t:e"', Outcome.HOLDS, None),
+        (
+            'not ( "ball" is located at "right" whenever "cube" is held by "arm" after event "t:e" )',
+            Outcome.VIOLATED,
+            None,
+        ),
+        (
+            "\"['ball', 'cube']\" is located at \"left\" whenever \"['ball', 'cube']\" is held by \"arm\""
+            ' after event "t:e"',
+            Outcome.HOLDS,
+            0.08,
+        ),
+        (
+            '"ball" is located at "left" whenever "ball" is located at "any of [\'left\', \'right\']"'
+            ' after event "t:e"',
+            Outcome.HOLDS,
+            0.08,
+        ),
+        (
+            '( "ball" is located at "right" whenever "cube" is held by "arm" after event "t:e"'
+            ' and "ball" is located at "left" after event "t:e" )',
+            Outcome.HOLDS,
+            0.08,
+        ),
         ('( the lamp is green and "ball" is held by "arm" after event "t:e" )', Outcome.UNKNOWN, None),
     ],
 )
@@ -182,7 +208,7 @@ def test_each_existential_slot_is_chosen_by_itself() -> None:
     some = "\"any of ['ball', 'cube']\" is located at \"any of ['right', 'left']\" after event \"t:e\""
     clause = read_clause(some)
     assert isinstance(clause, Fluent)
-    assert [[dict(words) for words in group] for group in alternatives(clause)] == [
+    assert [[dict(one.arguments) for one in group] for group in alternatives(clause)] == [
         [{"object": "ball", "workspace": "right"}],
         [{"object": "ball", "workspace": "left"}],
         [{"object": "cube", "workspace": "right"}],
@@ -193,7 +219,9 @@ def test_each_existential_slot_is_chosen_by_itself() -> None:
 def test_of_a_set_every_member_must_hold() -> None:
     clause = read_clause("\"['ball', 'cube']\" is located at \"any of ['left', 'right']\" after event \"t:e\"")
     assert isinstance(clause, Fluent)
-    assert [[(words["object"], words["workspace"]) for words in group] for group in alternatives(clause)] == [
+    assert [
+        [(one.arguments["object"], one.arguments["workspace"]) for one in group] for group in alternatives(clause)
+    ] == [
         [("ball", "left"), ("cube", "left")],
         [("ball", "right"), ("cube", "right")],
     ]

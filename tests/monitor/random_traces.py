@@ -35,10 +35,11 @@ ABOVE = Predicate(
 
 @dataclass(frozen=True)
 class Holds:
-    """The predicate *above* of an object, which has a path of heights."""
+    """The predicate *above* of an object, which has a path of heights, perhaps whenever another one is above."""
 
     thing: str
     time: TimeConstraint
+    condition: str | None = None
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,9 @@ class Story:
 def by_the_monitor(clause: Clause, story: Story) -> Verdict:
     """Judge a clause with the implementation under test."""
     match clause:
-        case Holds(thing, time):
-            return judge(ABOVE, {"thing": thing}, time, story.trace, {})
+        case Holds(thing, time, condition):
+            guard = None if condition is None else (ABOVE, {"thing": condition})
+            return judge(ABOVE, {"thing": thing}, time, story.trace, {}, guard)
         case Joined("not", (part,)):
             return negation(by_the_monitor(part, story))
         case Joined(operator, parts):
@@ -125,7 +127,10 @@ def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
 OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), _times(ITERATIONS))
 """Clauses that name an iteration each, of things that are recorded."""
 FLUENTS: st.SearchStrategy[Clause] = st.builds(
-    Holds, st.sampled_from(["x", "y", "missing"]), _times((0, LAST, *ITERATIONS))
+    Holds,
+    st.sampled_from(["x", "y", "missing"]),
+    _times((0, LAST, *ITERATIONS)),
+    st.none() | st.sampled_from(["x", "y", "missing"]),
 )
 
 

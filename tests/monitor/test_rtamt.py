@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from monitor.random_traces import OBSERVED, Clause, Holds, Joined, Story, by_the_monitor, stories
 from monitor.traces import STEP
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.verdict import Outcome
 
 HUGE = 1e6
 """Margin of the proposition "the event is at this sample", far beyond any margin of a predicate."""
@@ -23,6 +24,8 @@ def steps(horizon: float | None) -> str:
 
 def formula(clause: Clause) -> str:
     match clause:
+        case Holds(thing, time, str(condition)):
+            return f"always(({when(time)} and ({condition} >= 0)) implies ({thing} >= 0))"
         case Holds(thing, time) if time.some_time:
             return f"eventually({when(time)} and ({thing} >= 0))"
         case Holds(thing, time):
@@ -100,3 +103,19 @@ def test_every_kind_of_window_is_compared(time: TimeConstraint) -> None:
     events = (("a", 0.2, 1), ("b", 0.4, 1), ("a", 0.3, 2), ("b", 0.5, 2))
     story = Story({"x": [0.5, -1.0, 0.25, -2.0, 0.75, -3.0], "y": [0.0] * 6}, events)
     assert by_the_monitor(Holds("x", time), story).robustness == by_rtamt(Holds("x", time), story)
+
+
+GUARDED = OBSERVED.filter(lambda one: isinstance(one, Holds) and not one.time.some_time).map(
+    lambda one: Holds(one.thing, one.time, "y" if one.thing == "x" else "x") if isinstance(one, Holds) else one
+)
+
+
+@settings(max_examples=100)
+@given(GUARDED, stories(events_on_samples=True))
+def test_a_condition_has_the_truth_value_of_signal_temporal_logic(clause: Clause, story: Story) -> None:
+    """The margins differ: there, they are also those of the condition."""
+    assume(len(story.paths["x"]) > 1)
+    found, margin = by_the_monitor(clause, story), by_rtamt(clause, story)
+    # At a margin of 0, that monitor tells neither true from false.
+    assume(found.outcome is not Outcome.UNKNOWN and margin != 0)
+    assert (found.outcome is Outcome.HOLDS) == (margin > 0)

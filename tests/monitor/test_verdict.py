@@ -97,9 +97,11 @@ def test_the_verdict_that_decides_is_returned() -> None:
     assert disjunction([high, of(1.0), of(2.0)]).robustness == 2.0
 
 
-def test_a_policy_without_margin_decides_like_a_margin_of_zero() -> None:
+def test_margins_are_those_of_the_operands_that_have_one() -> None:
     holds = Verdict(Outcome.HOLDS)
-    assert conjunction([of(1.0), holds, of(2.0)]) is holds
+    assert conjunction([holds, holds]) is holds
+    assert conjunction([of(2.0), holds, of(1.0)]).robustness == 1.0
+    assert negation(holds).outcome is Outcome.VIOLATED
     assert disjunction([holds, of(0.5)]).robustness == 0.5
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from kit import schema_errors
+from robbdd_tools.monitor.verdict import NEVER_APPLIED
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunMessage, decode, encode
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.results import RunResults
@@ -65,3 +66,13 @@ def test_what_held_before_the_behaviour_in_every_execution_is_marked(
     varied = ((-0.1, 0.1),)
     found = of_run(MarginRanges(0, 5, varied, one), MarginRanges(1, 5, varied, other)).vacuous()
     assert found == ({IRI: HELD_BEFORE} if marked else {})
+
+
+@pytest.mark.parametrize("applied", [True, False])
+def test_a_condition_that_holds_in_no_execution_is_marked(applied: bool) -> None:
+    never = ClauseJudged(0, 5, "holds", None, "", None, NEVER_APPLIED, None, NEVER_APPLIED)
+    other = ClauseJudged(1, 5, "holds", 0.1, "m", 0.5, "") if applied else replace(never, index=1)
+    assert of_run(never, other).vacuous() == ({} if applied else {IRI: NEVER_APPLIED})
+    assert of_run(replace(other, index=0), replace(never, index=1)).vacuous() == (
+        {} if applied else {IRI: NEVER_APPLIED}
+    )

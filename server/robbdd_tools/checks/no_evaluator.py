@@ -11,6 +11,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.step_files import may_define
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.protocol.time_words import instant_words, interval_words
 from robbdd_tools.syntax import tree
@@ -101,7 +102,8 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 
 def _sentence(clause: FreeClause) -> str:
-    return sample_sentence(text_of(clause).value, _time_words(clause.time))
+    condition = clause.condition.word if isinstance(clause, tree.Fluent) and clause.condition is not None else None
+    return sample_sentence(text_of(clause).value, _time_words(clause.time), condition)
 
 
 def _time_words(time: tree.TimeConstraint) -> str:
@@ -112,10 +114,13 @@ def _time_words(time: tree.TimeConstraint) -> str:
     return instant_words(relation, "x", seconds, time.some_time)
 
 
-def sample_sentence(text: str, time: str) -> str:
+def sample_sentence(text: str, time: str, condition: str | None = None) -> str:
     """Return the sentence of a step for a text, as in a feature, with sample words for values.
 
-    ``time`` are the words of its time constraint, with sample words for events.
+    ``time`` are the words of its time constraint, with sample words for events. ``condition`` is the predicate of its
+    condition.
     """
     stated = _SLOT.sub('"x"', text.strip().replace("\\", "\\\\"))
+    if condition is not None:
+        stated += f" whenever {_SLOT.sub('x', load_catalog().predicates[condition].sentence)}"
     return f"{stated} {time}"

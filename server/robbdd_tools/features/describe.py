@@ -14,7 +14,7 @@ from robbdd_tools.features.clause_results import clause_hints, pass_rate, substi
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.run_verdicts import NOTHING
-from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
+from robbdd_tools.features.sentences import clause_sentence, condition_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of, story_sites
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
@@ -190,6 +190,7 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
                 yield word_meaning(word_of(phrase))
             if isinstance(node, tree.Fluent):
                 yield time_meaning(node.time)
+                yield from [] if node.condition is None else [condition_meaning(node.condition)]
             return
 
 

@@ -18,6 +18,8 @@ def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
         return _phrase_sentence(clause.action)
     predicate = clause.predicate
     words = _phrase_sentence(predicate) if isinstance(predicate, tree.PhraseUse) else _text_sentence(predicate)
+    if clause.condition is not None:
+        words = f"{words} whenever {_phrase_sentence(clause.condition)}"
     return f"{words} {time_words(clause.time)}"
 
 
@@ -47,6 +49,14 @@ def time_meaning(time: tree.TimeConstraint) -> str:
             "largest in this time; the result says when it first held and how much time was left."
         )
     return f"Judged throughout the {time.horizon.value} s {ends} `{time.event.path}`."
+
+
+def condition_meaning(condition: tree.PhraseUse) -> str:
+    """Describe which samples of a window a clause with this condition concerns."""
+    return (
+        f"Judged only at the samples at which this holds: {_phrase_sentence(condition)}. The margin is that of the "
+        "predicate at these samples. If there are none, the clause holds and is marked as vacuous."
+    )
 
 
 def emission_meaning(emission: tree.Emission) -> str:

@@ -78,11 +78,13 @@ class Binder:
             case Fluent():
                 predicate = self.catalog.predicates[clause.predicate]
                 slots = self._slots((slot.name for slot in predicate.slots), clause.arguments, values)
-                return stated.Fluent(predicate, slots, self._time(clause), clause.iri, self._named(clause, values))
+                named, condition = self._named(clause, values), self._condition(clause, values)
+                return stated.Fluent(predicate, slots, self._time(clause), clause.iri, named, condition)
             case TextFluent():
                 fillers = self._slots(clause.arguments, clause.arguments, values)
                 words = filled(text.free(clause.template), fillers)
-                return stated.Text(words, self._time(clause), clause.iri, self._named(clause, values))
+                named, condition = self._named(clause, values), self._condition(clause, values)
+                return stated.Text(words, self._time(clause), clause.iri, named, condition)
             case TextClause():
                 return stated.Text(text.free(clause.text), self._time(clause), clause.iri, self._named(clause, values))
             case Junction(operator="not"):
@@ -166,6 +168,14 @@ class Binder:
     ) -> dict[str, stated.Filler]:
         return {slot: self._slot(slot, arguments.get(slot), values) for slot in slots}
 
+    def _condition(self, clause: Fluent | TextFluent, values: Values) -> stated.Condition | None:
+        condition = clause.condition
+        if condition is None:
+            return None
+        predicate = self.catalog.predicates[condition.predicate]
+        slots = (slot.name for slot in predicate.slots)
+        return stated.Condition(predicate, self._slots(slots, condition.arguments, values))
+
     def _slot(self, slot: str, term: Iri | str | None, values: Values) -> stated.Filler:
         # An incomplete graph may leave a slot empty; show its name in braces.
         if term is None:
@@ -200,7 +210,9 @@ class Binder:
 def mentions(clause: Clause, variable: Iri) -> bool:
     """Return whether a clause refers to a variable."""
     match clause:
-        case Fluent() | TextFluent() | BehaviourClause():
+        case Fluent() | TextFluent():
+            return variable in _terms(clause)
+        case BehaviourClause():
             return variable in clause.arguments.values()
         case Junction():
             return any(mentions(operand, variable) for operand in clause.operands)
@@ -210,7 +222,13 @@ def mentions(clause: Clause, variable: Iri) -> bool:
             return False
 
 
+def _terms(clause: Fluent | TextFluent) -> list[Iri | str]:
+    """Return what fills the slots of a clause and of its condition."""
+    condition = clause.condition
+    return [*clause.arguments.values(), *(() if condition is None else condition.arguments.values())]
+
+
 def _mentions_once(clause: Clause, variable: Iri) -> bool:
     if isinstance(clause, Fluent | TextFluent):
-        return list(clause.arguments.values()).count(variable) == 1
+        return _terms(clause).count(variable) == 1
     return isinstance(clause, Exists) and len(clause.clauses) == 1 and _mentions_once(clause.clauses[0], variable)

@@ -133,12 +133,17 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
                 yield _pattern("when", load_catalog().behaviours[clause.behaviour].sentence)
             case Fluent():
                 sentence = load_catalog().predicates[clause.predicate].sentence
-                yield _pattern(clause.role, f"{sentence} {_time(clause.time)}")
+                yield _pattern(clause.role, f"{sentence}{_condition(clause)} {_time(clause.time)}")
             case TextFluent():
-                yield _pattern(clause.role, f"{text.free(clause.template)} {_time(clause.time)}")
+                yield _pattern(clause.role, f"{text.free(clause.template)}{_condition(clause)} {_time(clause.time)}")
             case TextClause():
                 literal = text.free(clause.text).replace("{", "{{").replace("}", "}}")
                 yield _pattern(clause.role, f"{literal} {_time(clause.time)}")
+
+
+def _condition(clause: Fluent | TextFluent) -> str:
+    condition = clause.condition
+    return "" if condition is None else f" whenever {load_catalog().predicates[condition.predicate].sentence}"
 
 
 def _time(constraint: TimeConstraint) -> str:

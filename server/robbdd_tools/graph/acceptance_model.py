@@ -28,11 +28,20 @@ Cell = Value | tuple[Value, ...]
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """The predicate of ``whenever``. Its fields have the same meaning as in a fluent."""
+
+    iri: Iri
+    predicate: str
+    arguments: Mapping[str, Iri | str]
+
+
+@dataclass(frozen=True, slots=True)
 class Fluent:
     """A predicate under a time constraint. The events of the time constraint are IRIs.
 
     ``predicate`` is the name of the predicate in the catalog. ``arguments`` maps each slot of the predicate to a
-    variable, an element or a bare name.
+    variable, an element or a bare name. ``condition`` selects the samples at which the predicate must hold.
     """
 
     iri: Iri
@@ -40,6 +49,7 @@ class Fluent:
     predicate: str
     arguments: Mapping[str, Iri | str]
     time: TimeConstraint
+    condition: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +61,7 @@ class TextFluent:
     template: str
     arguments: Mapping[str, Iri]
     time: TimeConstraint
+    condition: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import count, product
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 NO_STEP = "no step definition"
 """Prefix of the reason for a clause that no step judges."""
 SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
+_OF_CONDITION = "whenever "
 
 
 def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
@@ -79,14 +80,47 @@ def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
     return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
 
 
-def alternatives(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """The arguments of a fluent's predicate and, if it has one, of its condition, in the form for evaluators."""
+
+    arguments: Arguments
+    condition: Arguments | None = None
+
+
+def alternatives(fluent: Fluent) -> Iterator[Iterator[Instance]]:
     """Yield the alternatives of a fluent. The fluent holds if one alternative does.
 
-    An alternative is a list of arguments, all of which must satisfy the predicate.
+    An alternative is a list of instances, all of which must hold. A set that fills a slot of the predicate and a slot
+    of the condition has the same element in both.
     """
-    slots = fluent.predicate.slots
-    some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
-    return (_instances(slots, chosen) for chosen in _choices(fluent.arguments, some))
+    slots, arguments = fluent.predicate.slots, dict(fluent.arguments)
+    condition = fluent.condition
+    if condition is not None:
+        renamed = {slot.name: f"{_OF_CONDITION}{slot.name}" for slot in condition.predicate.slots}
+        slots += tuple(replace(slot, name=renamed[slot.name]) for slot in condition.predicate.slots)
+        arguments |= {renamed[name]: filler for name, filler in condition.arguments.items()}
+    some = [slot for slot in slots if isinstance(arguments[slot.name], AnyOf)]
+    return (_split_instances(fluent, slots, chosen) for chosen in _choices(arguments, some))
+
+
+def _split_instances(fluent: Fluent, slots: tuple[Slot, ...], arguments: Mapping[str, Filler]) -> Iterator[Instance]:
+    """Yield the instances of a fluent. The names of the slots of its condition begin with ``_OF_CONDITION``."""
+    single = [slot.name for slot in slots if slot.kind not in SETS and not isinstance(arguments[slot.name], str)]
+    own = [name for name in single if not name.startswith(_OF_CONDITION)]
+    same = [
+        (name, other)
+        for name in single
+        if name.startswith(_OF_CONDITION)
+        for other in own
+        if arguments[name] == arguments[other]
+    ]
+    for words in _instances(slots, arguments):
+        if any(words[name] != words[other] for name, other in same):
+            continue
+        own_words = {name: word for name, word in words.items() if not name.startswith(_OF_CONDITION)}
+        others = {name.removeprefix(_OF_CONDITION): word for name, word in words.items() if name not in own_words}
+        yield Instance(own_words, None if fluent.condition is None else others)
 
 
 def _closed(fluent: Fluent, trace: Trace, events: AbstractSet[str]) -> bool:
@@ -101,13 +135,16 @@ def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[
     if silent and fluent.predicate.evaluate is not None:
         return unknown(f"nothing in the scenario emits event {silent[0]}", Cause.NO_EMITTER)
     return disjunction(
-        conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in alternatives(fluent)
+        conjunction(_judged(fluent, instance, trace, regions) for instance in group) for group in alternatives(fluent)
     )
 
 
-def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions) -> Verdict:
+def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) -> Verdict:
+    condition = None
+    if fluent.condition is not None and instance.condition is not None:
+        condition = fluent.condition.predicate, instance.condition
     try:
-        return judge(fluent.predicate, arguments, fluent.time, trace, regions)
+        return judge(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
     except Unobserved as error:
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:

@@ -12,9 +12,9 @@ import numpy as np
 
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.coordination import END, START, emitter
-from robbdd_tools.judging.decisions import alternatives
+from robbdd_tools.judging.decisions import Instance, alternatives
 from robbdd_tools.monitor.curve import Curve, curve
-from robbdd_tools.monitor.judge import WindowEvidence
+from robbdd_tools.monitor.judge import WindowEvidence, margins_of
 from robbdd_tools.monitor.time import Window
 from robbdd_tools.protocol.clauses import BehaviourCall, Clause, Fluent, Junction, Text
 
@@ -75,6 +75,15 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
     replace_file(path, json.dumps(document, ensure_ascii=False) + "\n")
 
 
+def _margins(fluent: Fluent, evidence: WindowEvidence, instance: Instance) -> FloatArray:
+    """Return the margins of one instance, shape (n,); infinite at samples at which its condition does not hold."""
+    margins = margins_of(fluent.predicate, evidence, instance.arguments)
+    if fluent.condition is None or instance.condition is None:
+        return margins
+    applies = margins_of(fluent.condition.predicate, evidence, instance.condition)
+    return np.where(applies >= 0, margins, np.inf)
+
+
 def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Curve:
     predicate = fluent.predicate
     every = [list(group) for group in alternatives(fluent)]
@@ -84,7 +93,7 @@ def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Cur
             return None
         evidence = WindowEvidence(trace, rows, regions)
         try:
-            worst = [np.min([predicate.evaluate(evidence, words) for words in group], axis=0) for group in every]
+            worst = [np.min([_margins(fluent, evidence, one) for one in group], axis=0) for group in every]
             best: FloatArray = np.max(worst, axis=0)
         except Exception:  # no record, an empty set, failing users' code: the verdict reports it
             return None
@@ -93,5 +102,5 @@ def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Cur
     unit = predicate.unit
     if predicate.unit_for is not None:
         with suppress(KeyError, IndexError):
-            unit = predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), every[0][0])
+            unit = predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), every[0][0].arguments)
     return curve(Curve(unit=unit, negated=negated), fluent.time, trace, margins)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.coordination import START, emitter
 from robbdd_tools.judging.decisions import decide, ranges
 from robbdd_tools.judging.scenario_clauses import behaviour_calls
-from robbdd_tools.monitor.time import Before, During, TimeConstraint
+from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.clauses import Clause, Fluent, Junction, fluents_of
@@ -50,7 +50,7 @@ def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: 
     fluents = list(fluents_of(clause))
     if stated.role != "then" or not fluents:
         return None
-    if any(_persists(one.time) or one.predicate.set_up or one.predicate.quantities for one in fluents):
+    if any(_persists(one) or one.predicate.set_up or one.predicate.quantities for one in fluents):
         return None
     time = _beginning(stated, spec, trace)
     if time is None:
@@ -63,8 +63,9 @@ def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: 
     return holds and outcome is Outcome.HOLDS
 
 
-def _persists(time: TimeConstraint) -> bool:
-    return isinstance(time, During) and not time.some_time
+def _persists(fluent: Fluent) -> bool:
+    """Return whether a fluent requires more than a state at one instant."""
+    return fluent.condition is not None or (isinstance(fluent.time, During) and not fluent.time.some_time)
 
 
 def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | None:

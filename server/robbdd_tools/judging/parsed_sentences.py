@@ -12,6 +12,7 @@ from robbdd_tools.protocol.clauses import (
     AnyOf,
     BehaviourCall,
     Clause,
+    Condition,
     EventOccurrence,
     Filler,
     Fluent,
@@ -24,11 +25,13 @@ from robbdd_tools.protocol.time_words import FIRST_WORDING, TIME, WORDING, const
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Behaviour, Predicate, Slot
 
-NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
-"""A negation, and an alternative or enumeration."""
-OCCURS = r'event "(?P<event>[^"]*)" occurs'
 QUOTED = r'(?:[^"\\]|\\.)*'
 """Contents of double quotes; a backslash escapes the next character."""
+NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
+"""A negation, and an alternative or enumeration."""
+CONDITION = rf'(?: whenever (?P<condition>(?:"{QUOTED}"|[^"])*?))?'
+"""The condition after the predicate of a sentence."""
+OCCURS = r'event "(?P<event>[^"]*)" occurs'
 ANY = "any of "
 _ESCAPE = re.compile(r"\\(?:u([0-9a-f]{4})|(.))")
 _NAMED = {"n": "\n", "r": "\r", "t": "\t"}
@@ -45,7 +48,7 @@ def sentence_pattern(sentence: str) -> str:
 
 def fluent_pattern(predicate: Predicate) -> str:
     """Return the regular expression of a step that states a fluent with this predicate."""
-    return f"{sentence_pattern(predicate.sentence)} {TIME}"
+    return rf"{sentence_pattern(predicate.sentence)}{CONDITION} {TIME}"
 
 
 def read_step(role: str, text: str, wording: int = WORDING) -> Statement | None:
@@ -70,7 +73,10 @@ def read_clause(text: str, wording: int = WORDING) -> Clause:
     """
     for predicate, pattern in _fluents():
         if (match := pattern.fullmatch(text)) is not None and _understood(match, wording):
-            return Fluent(predicate, _fillers(match, predicate.slots), constraint_of(match))
+            condition = _condition(match["condition"])
+            if condition is not None or match["condition"] is None:
+                fillers = _fillers(match, predicate.slots)
+                return Fluent(predicate, fillers, constraint_of(match), condition=condition)
     if (match := re.fullmatch(NOT, text)) is not None and _balanced(match["inner"]):
         return Junction("not", (read_clause(match["inner"], wording),))
     inner = text
@@ -87,7 +93,9 @@ def read_clause(text: str, wording: int = WORDING) -> Clause:
     match = re.fullmatch(rf"(?P<words>.*?) {TIME}", text)
     if match is None or not _understood(match, wording):
         return Text(text)
-    return Text(match["words"], constraint_of(match))
+    words, _, stated = match["words"].rpartition(" whenever ")
+    condition = _condition(stated) if words else None
+    return Text(match["words"] if condition is None else words, constraint_of(match), condition=condition)
 
 
 def unescaped(text: str) -> str:
@@ -99,6 +107,20 @@ def unescaped(text: str) -> str:
 def _fluents() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
     predicates = load_catalog().predicates.values()
     return tuple((predicate, re.compile(fluent_pattern(predicate))) for predicate in predicates)
+
+
+@cache
+def _conditions() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
+    predicates = load_catalog().predicates.values()
+    return tuple((predicate, re.compile(sentence_pattern(predicate.sentence))) for predicate in predicates)
+
+
+def _condition(text: str | None) -> Condition | None:
+    """Return the condition that a part of a sentence states; ``None`` if no predicate of the catalog matches."""
+    for predicate, pattern in () if text is None else _conditions():
+        if (match := pattern.fullmatch(text or "")) is not None:
+            return Condition(predicate, _fillers(match, predicate.slots))
+    return None
 
 
 @cache

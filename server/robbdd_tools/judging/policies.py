@@ -35,7 +35,7 @@ def _attached(clause: Clause, policies: Mapping[str, Policy], spec: ScenarioSpec
     if policy is None or clause.time is None:
         return clause
     time = _with_horizon(clause.time, policy.horizon)
-    return Fluent(_predicate(policy, spec, clause.named), {}, time, clause.iri)
+    return Fluent(_predicate(policy, spec, clause.named), {}, time, clause.iri, condition=clause.condition)
 
 
 def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint:

@@ -9,12 +9,16 @@ from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, fluents
 
 
 def fluents_with_quantity(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:
-    """Yield the fluents that need a quantity, once for each assignment of single elements to their slots."""
+    """Yield the fluents that need a quantity, once for each assignment of single elements to their slots.
+
+    These are the slots of the predicate or of the condition.
+    """
     for fluent in fluents_of(clause):
-        if quantity in fluent.predicate.quantities:
-            slots = tuple(fluent.arguments)
-            for chosen in product(*(_elements(fluent.arguments[slot]) for slot in slots)):
-                yield fluent, dict(zip(slots, chosen, strict=True))
+        for stated in (fluent, *(() if fluent.condition is None else (fluent.condition,))):
+            if quantity in stated.predicate.quantities:
+                slots = tuple(stated.arguments)
+                for chosen in product(*(_elements(stated.arguments[slot]) for slot in slots)):
+                    yield fluent, dict(zip(slots, chosen, strict=True))
 
 
 def _elements(filler: Filler) -> tuple[str, ...]:

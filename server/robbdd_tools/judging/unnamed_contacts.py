@@ -21,7 +21,7 @@ def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) 
     for fluent in (fluent for clause in clauses for fluent in fluents_of(clause)):
         if fluent.predicate.name != DOES_NOT_COLLIDE.name:
             continue
-        for arguments in (arguments for group in alternatives(fluent) for arguments in group):
+        for arguments in (instance.arguments for group in alternatives(fluent) for instance in group):
             agent, target = str(arguments["agent"]), str(arguments["target"])
             carriers = [carrier for carrier, _ in regions.get(target, ())]
             named |= {(agent, carrier) for carrier in carriers or [target]}

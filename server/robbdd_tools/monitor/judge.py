@@ -10,7 +10,7 @@ import numpy as np
 
 from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, closing_time, window
 from robbdd_tools.monitor.vacuity import Range
-from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import EMPTY_WINDOW, NEVER_APPLIED, Cause, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
 T = TypeVar("T")
+NOT_THROUGHOUT = "'whenever' needs a time constraint that says throughout, not 'at some time'"
 NOT_A_NUMBER = "the margin is not a number at some sample"
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 """Workspace → its regions, each with the object whose frame it is in."""
@@ -128,16 +129,24 @@ class WindowEvidence:
 
 
 def judge(
-    predicate: Predicate, arguments: Arguments, constraint: TimeConstraint, trace: Trace, regions: Regions
+    predicate: Predicate,
+    arguments: Arguments,
+    constraint: TimeConstraint,
+    trace: Trace,
+    regions: Regions,
+    condition: tuple[Predicate, Arguments] | None = None,
 ) -> Verdict:
-    """Judge ``holds(predicate(arguments), constraint)``.
+    """Judge ``holds(predicate(arguments), constraint)``, ``whenever`` a condition holds if there is one.
 
     ρ is the smallest margin in the window or, if the constraint requires the predicate at some time only, the largest;
     *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an
     argument.
     """
-    if predicate.evaluate is None:
-        return unknown(f"there is no evaluator for '{predicate.name}'", Cause.NO_STEP)
+    for judged in (predicate, *(() if condition is None else condition[:1])):
+        if judged.evaluate is None:
+            return unknown(f"there is no evaluator for '{judged.name}'", Cause.NO_STEP)
+    if condition is not None and constraint.some_time:
+        return unknown(NOT_THROUGHOUT, Cause.NO_STEP)
     selected = window(constraint, trace)
     missing = selected if isinstance(selected, NoWindow) else None
     rows = selected.recorded if isinstance(selected, NoWindow) else selected
@@ -148,13 +157,25 @@ def judge(
     assert rows is not None
     evidence = WindowEvidence(trace, rows, regions)
     try:
-        margins = predicate.evaluate(evidence, arguments)
+        margins = margins_of(predicate, evidence, arguments)
+        applies = None if condition is None else margins_of(condition[0], evidence, condition[1])
         unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
+    if applies is not None:
+        return _verdict_whenever(margins, applies, evidence.times, unit)
     if constraint.some_time:
         return _some_time_verdict(margins, evidence.times, unit, closing_time(constraint, trace), missing)
     return _verdict(margins, evidence.times, unit)
+
+
+def margins_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> FloatArray:
+    """Return the margin of a predicate, which must have an evaluator, at each sample of a window, shape (n,).
+
+    Raises ``KeyError`` for a missing record.
+    """
+    assert predicate.evaluate is not None
+    return predicate.evaluate(evidence, arguments)
 
 
 def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> Range | None:
@@ -207,3 +228,25 @@ def _some_time_verdict(
     end = float(times[-1])
     reason = f"it held at no time until {end:.2f} s, and was closest at {best_at:.2f} s"
     return Verdict(Outcome.VIOLATED, robustness, unit, end, reason, best_at)
+
+
+def _verdict_whenever(margins: FloatArray, condition: FloatArray, times: FloatArray, unit: str) -> Verdict:
+    """Return the verdict on a predicate that must hold at the samples at which a condition holds.
+
+    ``condition`` are the margins of the condition, shape (n,). At each sample, the clause is the strong Kleene
+    implication of the condition and the predicate. A margin that is not a number is unknown.
+    """
+    known, held = np.isfinite(margins), np.isfinite(margins) & (margins >= 0)
+    maybe = ~(np.isfinite(condition) & (condition < 0))
+    surely = np.isfinite(condition) & (condition >= 0)
+    violated = surely & known & ~held
+    if not np.any(violated):
+        undecided = maybe & ~held
+        if np.any(undecided):
+            row = int(np.argmax(undecided))
+            reason = NOT_A_NUMBER if surely[row] else f"its condition is not known at {times[row]:.2f} s"
+            return unknown(reason, Cause.NO_RECORD)
+        if not np.any(maybe):
+            return Verdict(Outcome.HOLDS, reason=NEVER_APPLIED, vacuous=NEVER_APPLIED)
+    rows = surely & known if np.any(violated) else maybe
+    return _verdict(margins[rows], times[rows], unit)

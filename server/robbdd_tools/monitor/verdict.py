@@ -10,6 +10,7 @@ from robbdd_tools.monitor.fault import Fault
 
 EMPTY_WINDOW = "its window contains no sample"
 EMPTY_SET = "a set that it quantifies over is empty"
+NEVER_APPLIED = "its condition never holds in the window"
 """Why a clause could not have been violated."""
 
 
@@ -66,7 +67,8 @@ class Cause(StrEnum):
 class Verdict:
     """The judgement of one clause on one trace.
 
-    - ``robustness``: the signed margin in ``unit``; positive if the clause holds; ``None`` if unknown.
+    - ``robustness``: the signed margin in ``unit``; positive if the clause holds; ``None`` if unknown, or if the
+      condition of ``whenever`` never held.
     - ``at``: the instant (s) of the violation, which is the first sample with a negative margin. If the clause holds,
       it is the instant of the smallest margin; if it is unknown, ``None``. A predicate that must hold at some time only
       is violated at the last sample of the window, and holds at the first sample with a margin of at least 0.
@@ -101,9 +103,11 @@ def negation(verdict: Verdict) -> Verdict:
 
     The margin changes its sign, and the instant is that of the smallest margin.
     """
-    if verdict.robustness is None:
+    if verdict.outcome is Outcome.UNKNOWN:
         return verdict
     outcome = Outcome.VIOLATED if verdict.outcome is Outcome.HOLDS else Outcome.HOLDS
+    if verdict.robustness is None:
+        return replace(verdict, outcome=outcome)
     return replace(verdict, outcome=outcome, robustness=-verdict.robustness, at=verdict.worst_at, reason="")
 
 
@@ -132,4 +136,5 @@ def _combine(verdicts: list[Verdict], decisive: Outcome, sign: float) -> Verdict
         if open_ones:
             return open_ones[0]
         deciding = verdicts
-    return min(deciding, key=lambda verdict: sign * (verdict.robustness or 0.0))
+    measured = [verdict for verdict in deciding if verdict.robustness is not None]
+    return min(measured or deciding, key=lambda verdict: sign * (verdict.robustness or 0.0))

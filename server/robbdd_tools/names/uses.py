@@ -114,6 +114,8 @@ class _Collector:
             case tree.Fluent():
                 self.visit(node.time, bound, repeated=repeated)
                 self._phrase(node.predicate, bound)
+                if node.condition is not None:
+                    self._phrase(node.condition, bound)
             case tree.TextClause():
                 self.visit(node.time, bound, repeated=repeated)
             case tree.During():

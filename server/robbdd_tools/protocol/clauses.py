@@ -29,8 +29,16 @@ Filler = str | tuple[str, ...] | AnyOf
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """The predicate of ``whenever``, with the values of its slots."""
+
+    predicate: Predicate
+    arguments: Mapping[str, Filler]
+
+
+@dataclass(frozen=True, slots=True)
 class Fluent:
-    """The clause ``holds(predicate, time)``, with the values of the predicate's slots.
+    """The clause ``holds(predicate whenever condition, time)``, with the values of the predicate's slots.
 
     ``iri`` is the IRI of the clause in the model. ``named`` has the values of its slots and quantified variables by
     name, for users' code that judges it.
@@ -41,19 +49,21 @@ class Fluent:
     time: TimeConstraint
     iri: str = ""
     named: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    condition: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
     """The text of a step that no word of the catalog matches. ``time`` is ``None`` if it has no time constraint.
 
-    ``iri`` and ``named`` have the same meaning as in a fluent.
+    ``iri``, ``named`` and ``condition`` have the same meaning as in a fluent.
     """
 
     words: str
     time: TimeConstraint | None = None
     iri: str = ""
     named: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    condition: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,17 +146,29 @@ def _clause(data: Mapping[str, Any]) -> Clause:
             found = _time(time)
             if found is None:
                 raise ValueError(f"{data!r} has no time constraint")
-            iri, named = data.get("iri", ""), data.get("named", {})
-            return Fluent(load_catalog().predicates[name], _arguments(arguments), found, iri, named)
+            predicate, condition = load_catalog().predicates[name], _condition(data)
+            return Fluent(
+                predicate, _arguments(arguments), found, data.get("iri", ""), data.get("named", {}), condition
+            )
         case {"text": str(words)}:
-            return Text(words, _time(data.get("time")), data.get("iri", ""), data.get("named", {}))
+            return Text(words, _time(data.get("time")), data.get("iri", ""), data.get("named", {}), _condition(data))
         case _:
             raise ValueError(f"{data!r} is not a clause")
 
 
 def _leaf(leaf: Fluent | Text) -> dict[str, Any]:
     found: dict[str, Any] = {} if leaf.time is None else {"time": _plain_time(leaf.time)}
+    if leaf.condition is not None:
+        arguments = _plain_arguments(leaf.condition.arguments)
+        found["whenever"] = {"predicate": leaf.condition.predicate.name, "arguments": arguments}
     return {**found, "iri": leaf.iri, **({"named": dict(leaf.named)} if leaf.named else {})}
+
+
+def _condition(data: Mapping[str, Any]) -> Condition | None:
+    found = data.get("whenever")
+    if found is None:
+        return None
+    return Condition(load_catalog().predicates[found["predicate"]], _arguments(found["arguments"]))
 
 
 def _plain_arguments(arguments: Mapping[str, Filler]) -> dict[str, object]:

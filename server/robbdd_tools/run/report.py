@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import floor, isfinite, log10
 from typing import cast
 
 from robbdd_tools.gherkin.steps import sentence
@@ -14,6 +15,8 @@ from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 SIGNS = {Outcome.HOLDS: "✔", Outcome.VIOLATED: "✗", Outcome.UNKNOWN: "?"}
 MINUS = "−"
+MOST_DECIMALS = 6
+"""A smaller number is written with an exponent."""
 
 
 def plain_sentence(text: str) -> str:
@@ -34,13 +37,21 @@ def contact_words(contact: Contact) -> str:
 def margin(robustness: float | None, unit: str) -> str:
     """Return a margin with its sign and unit; empty if there is no unit.
 
-    A margin in metres is written in millimetres; other units are unchanged.
+    A margin in metres is written in millimetres; other units are unchanged. Small margins keep two digits that are not
+    zero (millimetres), or three.
     """
     if robustness is None or not unit:
         return ""
-    value, shown = (robustness * 1000.0, "mm") if unit == "m" else (robustness, unit)
-    digits = f"{abs(value):.0f}" if abs(value) >= 10 else f"{abs(value):.1f}"
-    return f"{MINUS if value < 0 else '+'}{digits} {shown}"
+    value, shown, digits = (robustness * 1000.0, "mm", 2) if unit == "m" else (robustness, unit, 3)
+    return f"{MINUS if value < 0 else '+'}{_rounded(abs(value), digits)} {shown}"
+
+
+def _rounded(value: float, digits: int) -> str:
+    """Return a number of at least 0 with this many significant digits, but with all digits before the point."""
+    if value == 0 or not isfinite(value):
+        return f"{value:.1f}"
+    decimals = digits - 1 - floor(log10(value))
+    return f"{value:.{max(decimals, 0)}f}" if decimals <= MOST_DECIMALS else f"{value:.{digits - 1}e}"
 
 
 def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:

@@ -197,6 +197,8 @@ class SpecWriter:
         places: dict[str, str] = {}
         config: list[ConfigSpec] = []
         for fluent, inner in _givens(self._model, shared.clauses, values):
+            if fluent.condition is not None:
+                continue
             if fluent.predicate == "located-at":
                 thing, place = (_value(fluent.arguments[slot], inner) for slot in ("object", "workspace"))
                 if isinstance(thing, Iri) and isinstance(place, Iri):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.vacuity import Range, is_constant, joined
+from robbdd_tools.monitor.verdict import NEVER_APPLIED, Outcome
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import ClauseJudged
@@ -22,12 +23,17 @@ class Vacuity:
     _said: dict[str, str] = field(default_factory=dict[str, str])
     _ranges: dict[str, list[Range]] = field(default_factory=dict[str, list[Range]])
     _executions: dict[str, int] = field(default_factory=dict[str, int])
+    _applied: dict[str, bool] = field(default_factory=dict[str, bool])
     _held: dict[str, list[bool]] = field(default_factory=dict[str, list[bool]])
 
     def judged(self, clause: ClauseSpec, judged: ClauseJudged) -> None:
         """Record one verdict on a clause."""
-        if judged.vacuous:
+        if judged.vacuous == NEVER_APPLIED:
+            self._applied.setdefault(clause.iri, False)
+        elif judged.vacuous:
             self._said.setdefault(clause.iri, judged.vacuous)
+        elif judged.verdict != Outcome.UNKNOWN:
+            self._applied[clause.iri] = True
 
     def varied(self, clause: ClauseSpec, ranges: Sequence[Sequence[float]]) -> None:
         """Record the range of the margin of each of a clause's fluents in one execution."""
@@ -50,7 +56,8 @@ class Vacuity:
         """Map the IRI of each clause that could not have failed, or that held from the start, to the reason."""
         constant = {iri: self._never_varied(iri) for iri, found in self._ranges.items() if all(map(is_constant, found))}
         held = {iri: HELD_BEFORE for iri, found in self._held.items() if all(found)}
-        return {**held, **constant, **self._said}
+        never = {iri: NEVER_APPLIED for iri, applied in self._applied.items() if not applied}
+        return {**held, **constant, **never, **self._said}
 
     def _never_varied(self, iri: str) -> str:
         margins = " and ".join(f"{low:.4g}" for low, _ in self._ranges[iri])

@@ -103,10 +103,11 @@ class TextPredicate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Fluent(Node):
-    """``name: holds(predicate, time constraint)``; a missing name is generated (``published``)."""
+    """``name: holds(predicate [whenever condition], time constraint)``; a missing name is generated (``published``)."""
 
     name: Name
     predicate: PhraseUse | TextPredicate
+    condition: PhraseUse | None
     time: TimeConstraint
 
 

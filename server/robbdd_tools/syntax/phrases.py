@@ -15,10 +15,14 @@ _PIECE = re.compile(r"<(?P<slot>\w+)>|\$(?P<name>\w+)|(?P<word>[^\W\d]\w*)|(?P<s
 
 
 def phrase_rules(catalog: Catalog) -> str:
-    """Return the rules ``Predicate`` and ``Action`` with one alternative per phrase of the catalog."""
+    """Return the rules ``Predicate``, ``Condition`` and ``Action`` with one alternative per phrase of the catalog.
+
+    A condition is a predicate that the catalog can judge, so it is not a text.
+    """
     predicates = dict(_phrases(PREDICATE_RULE, catalog.predicates))
     actions = dict(_phrases(ACTION_RULE, catalog.behaviours))
     rules = [f"Predicate: {' | '.join(['TextPredicate', *_longest_first(predicates)])};"]
+    rules.append(f"Condition: {' | '.join(_longest_first(predicates))};")
     rules.append(f"Action: {' | '.join(_longest_first(actions))};")
     rules += [f"{name}: {_body(phrase)};" for name, phrase in (predicates | actions).items()]
     return "\n".join(rules) + "\n"

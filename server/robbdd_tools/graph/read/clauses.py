@@ -11,6 +11,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
     Clause,
+    Condition,
     EventClause,
     Exists,
     Fluent,
@@ -79,7 +80,8 @@ class ClauseReader:
             return self._text_fluent(iri, role)
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
-                return Fluent(iri, role, word.name, self._arguments(iri, word.slots), self.time(iri))
+                arguments = self._arguments(iri, word.slots)
+                return Fluent(iri, role, word.name, arguments, self.time(iri), self._condition(iri))
         raise Incomplete(f"{iri} has no predicate that this installation knows")
 
     def _text_fluent(self, iri: Iri, role: str) -> TextFluent:
@@ -88,7 +90,17 @@ class ClauseReader:
         if len(names) != len(variables):
             raise Incomplete(f"{iri} has {len(names)} argument names for {len(variables)} variables")
         template = self.records.text(iri, "bdd:template-string")
-        return TextFluent(iri, role, template, dict(zip(names, variables, strict=True)), self.time(iri))
+        arguments = dict(zip(names, variables, strict=True))
+        return TextFluent(iri, role, template, arguments, self.time(iri), self._condition(iri))
+
+    def _condition(self, fluent: Iri) -> Condition | None:
+        if not self.records.all(fluent, "rbw:whenever"):
+            return None
+        iri = self.records.one(fluent, "rbw:whenever")
+        for word in load_catalog().predicates.values():
+            if self.records.is_a(iri, word.rdf_type):
+                return Condition(iri, word.name, self._arguments(iri, word.slots))
+        raise Incomplete(f"{iri} has no predicate that this installation knows")
 
     def _behaviour(self, iri: Iri) -> BehaviourClause:
         records = self.records
@@ -137,7 +149,9 @@ def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
     for clause in clauses:
         match clause:
             case Fluent() | TextFluent() | BehaviourClause():
-                yield from (argument for argument in clause.arguments.values() if isinstance(argument, Iri))
+                condition = None if isinstance(clause, BehaviourClause) else clause.condition
+                values = (*clause.arguments.values(), *(condition.arguments.values() if condition else ()))
+                yield from (argument for argument in values if isinstance(argument, Iri))
             case Junction():
                 yield from used_names(clause.operands)
             case ForAll() | Exists():

@@ -35,7 +35,10 @@ class Roles:
 
 
 def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
-    """Yield all clauses of some owners once, including those inside groups and quantifiers. Outer clauses are first."""
+    """Yield all clauses of some owners once, including those inside groups and quantifiers. Outer clauses are first.
+
+    The condition of a clause counts as a clause.
+    """
     seen: set[str] = set()
     waiting = list(owners)
     while waiting:
@@ -47,6 +50,7 @@ def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
                     seen.add(clause)
                     waiting.append(clause)
                     yield clause
+                    yield from records.iris(records.all(clause, "rbw:whenever"))
 
 
 def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]:

@@ -59,7 +59,8 @@ def load_vocabulary() -> Graph:
 
 def _add_words(derived: Derived) -> None:
     records = derived.records
-    for clause in (*records.instances("bdd:FluentClause"), *records.instances("bdd:WhenBehaviour")):
+    uses = [records.instances(kind) for kind in ("bdd:FluentClause", "bdd:WhenBehaviour", "rbw:Condition")]
+    for clause in chain.from_iterable(uses):
         for word in words_of(records, clause):
             derived.add(clause, "rdf:type", use_of(word.name))
             derived.add(clause, "rbw:predicate", use_of(word.name))

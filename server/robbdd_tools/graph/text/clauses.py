@@ -97,7 +97,9 @@ class ClauseText:
         match clause:
             case Fluent() | TextFluent():
                 name = self.names.declare(clause.iri, "clause", owner=self.owner, namespace=self.namespace)
-                return f"{name}: holds({self._predicate(clause)}, {self.time(clause.time)})"
+                return (
+                    f"{name}: holds({self._predicate(clause)}{self._condition(clause, name)}, {self.time(clause.time)})"
+                )
             case TextClause():
                 self._named(clause.iri, "text", path)
                 return f"{quoted(clause.text)} {self.time(clause.time)}"
@@ -124,6 +126,13 @@ class ClauseText:
                 raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is not a valid name")
         arguments = "".join(f", {name}={self._variable(value)}" for name, value in clause.arguments.items())
         return f"pred({quoted(clause.template)}{arguments})"
+
+    def _condition(self, clause: Fluent | TextFluent, name: str) -> str:
+        condition = clause.condition
+        if condition is None:
+            return ""
+        self._named(condition.iri, "whenever", f".{name}")
+        return f" whenever {self._phrase(load_catalog().predicates[condition.predicate].phrase, condition.arguments)}"
 
     def _phrase(self, phrase: str, arguments: Mapping[str, Iri | str]) -> str:
         return _SLOT.sub(lambda match: self._argument(arguments[match[1] or match[2]]), phrase)

@@ -107,8 +107,18 @@ class ClauseWriter:
             word = load_catalog().predicates[fluent.predicate.word]
             self._sink.add_types(node, [word.rdf_type], self.frame.at(fluent.name))
             self._arguments(node, word.slots, fluent.predicate)
+        if fluent.condition is not None:
+            self._condition(node, fluent.name, fluent.condition)
         self._time(node, fluent.time)
         return node
+
+    def _condition(self, fluent: URIRef, name: tree.Name, condition: tree.PhraseUse) -> None:
+        node = self._generated("whenever", f".{name.text}")
+        word = load_catalog().predicates[condition.word]
+        if node is not None:
+            self._sink.add_types(node, ["rbw:Condition", word.rdf_type], self.frame.at(condition))
+            self._arguments(node, word.slots, condition)
+            self._sink.add(fluent, "rbw:whenever", node, self.frame.at(condition))
 
     def _text_predicate(self, node: URIRef, predicate: tree.TextPredicate) -> None:
         sink, at = self._sink, self.frame.at
