@@ -43,6 +43,7 @@ from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
 from robbdd_tools.checks.setting import setting
+from robbdd_tools.checks.several_places import several_places
 from robbdd_tools.checks.single_element import single_element
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
@@ -92,6 +93,7 @@ FILE_RULES = (
     not_simulated,
     published_form,
     python_source,
+    several_places,
     unused_event,
     unused_import,
     unused_set,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
@@ -18,6 +19,8 @@ from robbdd_tools.checks.no_evaluator import CODE as NO_EVALUATOR
 from robbdd_tools.checks.no_evaluator import needs_evaluator, sample_sentence
 from robbdd_tools.checks.setting import CODE as SETTING
 from robbdd_tools.checks.setting import may_have, not_configurable, unknown_setting
+from robbdd_tools.checks.several_places import CODE as SEVERAL_PLACES
+from robbdd_tools.checks.several_places import at_each, have_nothing_in_common
 from robbdd_tools.checks.single_element import CODE as SINGLE_ELEMENT
 from robbdd_tools.checks.single_element import needs_one
 from robbdd_tools.graph.acceptance_model import (
@@ -49,6 +52,8 @@ def clause_findings(site: GraphSite) -> Iterator[Diagnostic]:
                 yield from _sets(site, variant, clause)
             elif isinstance(clause, Fluent) and clause.predicate == "has-config":
                 yield from _configuration(site, variant, clause)
+            elif isinstance(clause, Fluent) and clause.predicate == "located-at":
+                yield from _places(site, variant, clause)
 
 
 def _unjudged(site: GraphSite, clauses: tuple[Clause, ...]) -> Iterator[Diagnostic]:
@@ -106,6 +111,21 @@ def _configuration(site: GraphSite, variant: Variant, clause: Fluent) -> Iterato
         if not may_have(kind, model, name):
             message = not_configurable(site.local_name(element), model, kind, name)
             yield site.finding(clause.iri, SETTING, message)
+
+
+def _places(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagnostic]:
+    """Report a clause in which an object is at each of several places that have nothing in common."""
+    scene, variable = variant.scene, clause.arguments["workspace"]
+    carriers = {str(place): set(map(str, things)) for place, things in scene.carriers.items()}
+    inner = {str(place): set(map(str, parts)) for place, parts in scene.contains.items()}
+    for cell in _given(variant, variable):
+        places = dict.fromkeys(map(str, cell)) if isinstance(cell, tuple) else ()
+        for one, other in combinations(places, 2):
+            if have_nothing_in_common(one, other, carriers, inner):
+                thing, several = site.name(clause.arguments["object"]), site.name(variable)
+                message = at_each(thing, several, site.name(one), site.name(other))
+                yield site.finding(clause.iri, SEVERAL_PLACES, message)
+                return
 
 
 def _given(variant: Variant, term: Iri | str) -> tuple[Cell, ...]:

@@ -1,0 +1,163 @@
+"""``several-places``: an object should be located at each of several places that have nothing in common.
+
+A set of places in ``is located at`` means each of them, as any other set does; users often mean any of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, TypeVar
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.template_variants import Scenario, scenarios
+from robbdd_tools.names.elements import Element, Site, element_of, site_of, story_sites
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.types import Written, variable_key, written_elements
+from robbdd_tools.names.uses import clauses_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+CODE = "several-places"
+Key = tuple[str, str]
+Name = TypeVar("Name", bound=Hashable)
+
+
+@dataclass(frozen=True, slots=True)
+class _Use:
+    """A clause of a template or a variant in which a set variable is the place of an object."""
+
+    site: Site
+    thing: str
+    place: tree.Ref
+    variable: str
+
+
+def several_places(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each such clause once, with the places of the first variant in which it can never hold."""
+    uses = [use for placed in file.parts() for use in _uses(Site(snapshot, file, placed))]
+    if not uses:
+        return
+    reported: set[int] = set()
+    for scenario in _scenarios(snapshot, file):
+        own = (scenario.site.placed, None if scenario.template is None else scenario.template.placed)
+        for use in uses:
+            if use.site.placed not in own or id(use) in reported:
+                continue
+            found = _apart(scenario, use.variable)
+            if found is not None:
+                reported.add(id(use))
+                node, one, other = found
+                message = at_each(use.thing, use.place.path, one, other)
+                related = (related_to(scenario.site, node, "the places"),)
+                yield finding(use.site, use.place, Severity.WARNING, CODE, message, related)
+
+
+def at_each(thing: str, places: str, one: str, other: str) -> str:
+    """Return the message on an object that should be located at each of several places."""
+    return (
+        f"'{thing}' cannot be located at each of '{places}', because '{one}' and '{other}' have no place in common: "
+        f"to mean any of them, write '( var place exists in <{places}> ) such that "
+        f"{{ … <{thing}> is located at <place> … }}'"
+    )
+
+
+def have_nothing_in_common(
+    one: Name, other: Name, carriers: Mapping[Name, Set[Name]], inner: Mapping[Name, Set[Name]]
+) -> bool:
+    """Return whether two workspaces are certainly apart.
+
+    They are not if one contains the other or if the same object carries both. ``carriers`` maps a workspace to its
+    objects, ``inner`` to the workspaces directly inside it.
+    """
+    if one == other or carriers.get(one, frozenset()) & carriers.get(other, frozenset()):
+        return False
+    return other not in _reached(one, inner) and one not in _reached(other, inner)
+
+
+def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
+    found: set[Name] = set()
+    waiting = [start]
+    while waiting:
+        new = set(inner.get(waiting.pop(), ())) - found
+        found |= new
+        waiting += new
+    return found
+
+
+def _uses(site: Site) -> Iterator[_Use]:
+    for clauses in clauses_of(site.placed.declaration):
+        for phrase in clauses.phrases if site.whole(clauses.node) else ():
+            slots = dict(phrase.arguments)
+            place, thing = slots.get("workspace"), slots.get("object")
+            if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
+                variable = site.target(place)
+                if variable is not None and variable.kind is SymbolKind.SET_VARIABLE:
+                    yield _Use(site, thing.path, place, variable_key(variable))
+
+
+def _scenarios(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Scenario]:
+    """Yield the scenarios of a file and of the loaded files that import it."""
+    uri = file.document.uri
+    users = (uri, *(name for name in snapshot.importers(uri) if language_of(name) == "bdd"))
+    for user in (snapshot.file(name) for name in users):
+        for site in story_sites(snapshot, user) if user is not None else ():
+            yield from scenarios(site)
+
+
+def _apart(scenario: Scenario, variable: str) -> tuple[tree.Node, str, str] | None:
+    """Return a value of a set variable and two places in it that have nothing in common."""
+    carriers: dict[Key, set[Key]] = {}
+    inner: dict[Key, set[Key]] = {}
+    _contents(scenario.site.follow(scenario.variant.scene), carriers, inner, set())
+    for column in scenario.columns:
+        if column.variable is None or variable_key(column.variable) != variable:
+            continue
+        for node, elements in _sets(scenario.site, column.written):
+            places = [element for element in elements if element.kind == "workspace"]
+            for one, other in combinations(dict.fromkeys(places), 2):
+                if have_nothing_in_common(one.key, other.key, carriers, inner):
+                    return node, _local(one), _local(other)
+    return None
+
+
+def _sets(site: Site, written: Iterable[Written]) -> Iterator[tuple[tree.Node, list[Element]]]:
+    """Yield the values of a set variable; of a selection, all elements of its set."""
+    for value in written:
+        if isinstance(value, tree.SetList):
+            yield from _sets(site, value.sets)
+        elif not isinstance(value, tree.Selection) or value.count.value > 1:
+            yield value, [element for _, element in written_elements(site, value)]
+
+
+def _contents(
+    site: Site | None, carriers: dict[Key, set[Key]], inner: dict[Key, set[Key]], seen: set[tuple[str, int]]
+) -> None:
+    """Collect what the compositions of a scene, or of a composition, contain."""
+    root = None if site is None else site.tree
+    if site is None or not isinstance(root, tree.Scene | tree.Composition) or (site.uri, site.placed.offset) in seen:
+        return
+    seen.add((site.uri, site.placed.offset))
+    own = element_of(site, root.workspace) if isinstance(root, tree.Composition) else None
+    for entry in root.entries:
+        target = site.target(entry.reference)
+        composed = None if target is None else site_of(site.snapshot, target)
+        if entry.reference.role == "Composition":
+            _contents(composed, carriers, inner, seen)
+            if own is not None and composed is not None and isinstance(composed.tree, tree.Composition):
+                part = element_of(composed, composed.tree.workspace)
+                inner.setdefault(own.key, set()).update(() if part is None else (part.key,))
+        elif own is not None and target is not None:
+            known = inner if target.kind is SymbolKind.WORKSPACE else carriers
+            known.setdefault(own.key, set()).add((target.uri, target.symbol.path))
+
+
+def _local(element: Element) -> str:
+    return element.name.rpartition(".")[2]
