@@ -172,6 +172,14 @@ def test_a_failure_of_an_evaluator_is_missing_evidence_and_kept() -> None:
     assert (found.fault.exception, found.fault.code) == ("ZeroDivisionError", "located-at")
 
 
+def test_an_invalid_configuration_is_missing_evidence_and_no_failure_of_code() -> None:
+    found = decide(
+        read_clause('"arm" has config "ee_speed" = "ball" before event "t:e"'), a_trace(), REGIONS, EVENTS.keys()
+    )
+    assert (found.outcome, found.fault) == (Outcome.UNKNOWN, None)
+    assert found.reason == "'ee_speed' cannot be 'ball': it must be a number from 0.01 to 3 m/s"
+
+
 def test_a_failure_of_users_code_and_a_missing_observation_have_their_causes() -> None:
     fault = Fault("KeyError", "x", "policy:judge")
     found = decide(failing(UserCodeError("policy:judge failed", fault)), a_trace(), REGIONS, EVENTS.keys())

@@ -52,6 +52,15 @@ def changed(old: str, new: str) -> str:
         (changed("    var part\n", "    # the part\n    var part\n"), "#", "a comment starts with '//'"),
         (changed("    var part\n", "    /* the part */\n    var part\n"), "/*", "a comment starts with '//'"),
         (changed("Scenario bench-to-tray", "Scenario: bench-to-tray"), ":", "no ':' is allowed before the name"),
+        (changed(IN_TRAY, f"{IN_TRAY}\n    var late"), "late", "variables are declared before 'Given:'"),
+        (changed(IN_TRAY, f"{IN_TRAY}\n    set var late"), "var", "variables are declared before 'Given:'"),
+        (
+            f"{MODEL}obj set (ns=t) more {{ object peg }}\n",
+            "obj",
+            "'obj set' belongs in a .scene file: move it there, and",
+        ),
+        (f'{MODEL}bhv impl (ns=t) own {{ catalog "pick" }}\n', "bhv", "'bhv impl' belongs in a .bddx file: move it"),
+        (f"{MODEL}scene inst (ns=t) own {{ }}\n", "scene", "'scene inst' belongs in a .scenex file: move it there"),
     ],
 )
 def test_a_near_miss_is_one_error_that_says_what_to_write(text: str, blamed: str, words: str) -> None:

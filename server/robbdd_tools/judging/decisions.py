@@ -9,6 +9,7 @@ from itertools import count, product
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.settings import SettingError
 from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, occurrences, window
@@ -145,7 +146,7 @@ def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) 
         condition = fluent.condition.predicate, instance.condition
     try:
         return judge(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
-    except Unobserved as error:
+    except (Unobserved, SettingError) as error:
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:
         return unknown(str(error), Cause.USER_CODE, fault=error.fault)

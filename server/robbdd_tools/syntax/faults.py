@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
-from robbdd_tools.syntax.near_misses import near_miss
+from robbdd_tools.syntax.near_misses import near_miss, other_file
 from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
 
@@ -77,7 +77,7 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     if near is not None:
         return near
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
-        return SyntaxFault(span, f"'{found}' does not begin a declaration")
+        return SyntaxFault(span, other_file(text, 0) or f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)
     if not words:
         return trailing_fault(text, rejected.offset)
@@ -106,7 +106,8 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
 def trailing_fault(text: str, offset: int) -> SyntaxFault:
     """Return the fault of text after the end of a declaration."""
     token = _token(text, offset)
-    return SyntaxFault(token, f"unexpected '{_shown(text, token)}' after the end of the declaration")
+    unexpected = f"unexpected '{_shown(text, token)}' after the end of the declaration"
+    return SyntaxFault(token, other_file(text, offset) or unexpected)
 
 
 def _shown(text: str, span: Span) -> str:

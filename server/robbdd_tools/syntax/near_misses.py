@@ -58,6 +58,8 @@ _NEAR_MISSES = (
         "clauses joined by 'and' or 'or' need parentheses: '( … and … )'",
         ":",
     ),
+    NearMiss(r"\bvar\s+\Z", _NAME, "variables are declared before 'Given:': move it there", ":"),
+    NearMiss(r"\bset\s+\Z", r"var\b", "variables are declared before 'Given:': move it there", ":"),
     NearMiss(r"\bnot\s+\Z", _NAME, "'not' and its clause need parentheses: '( not name: holds(…) )'", ":"),
     NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
@@ -71,6 +73,25 @@ _NEAR_MISSES = (
     NearMiss(r"\b(?:Scenario|Template|Story)\s*\Z", r":\s*", "no ':' is allowed before the name", fix=lambda _: " "),
 )
 """The first match wins."""
+
+
+_OTHER_FILES = (
+    (re.compile(r"(?:similar\s+)?(?:obj|ws|agn)\s+set\b|comp\b|scene\b(?!\s+inst\b)"), ".scene"),
+    (re.compile(r"Scenario\s+Exec\b|bhv\s+impl\b|obs\s+(?:provider|policy)\b|observation\b"), ".bddx"),
+    (re.compile(r"scene\s+inst\b|distrib\b|kgraph\b"), ".scenex"),
+    (re.compile(r"Event\b|Task\b|const\s+set\b|Scenario\s+Template\b|User\s+Story\b"), ".bdd"),
+)
+"""First words of declarations, and the kind of file that may contain them."""
+
+
+def other_file(text: str, offset: int) -> str | None:
+    """Return the message on a declaration that another kind of file contains, or ``None`` if none begins there."""
+    for begin, kind in _OTHER_FILES:
+        match = begin.match(text, offset)
+        if match is not None:
+            imported = ", and import that file here" if kind == ".scene" else ""
+            return f"'{' '.join(match[0].split())}' belongs in a {kind} file: move it there{imported}"
+    return None
 
 
 def near_miss(text: str, rejected: Rejected) -> SyntaxFault | None:
