@@ -29,6 +29,9 @@ EVENTS = load_catalog().behaviours["pick-place"].events
         "https://example.org/t/evt-pick-end",
         "https://example.org/t#PickEnd",
         "t:pick_end",
+        "pickup_end",
+        "pick-up-ended",
+        "evt-picking-end",
     ],
 )
 def test_a_decorated_name_means_the_event(name: str) -> None:

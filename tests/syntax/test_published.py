@@ -186,6 +186,9 @@ def test_clauses_inside_expressions_are_named_too() -> None:
     assert names == ["x.x-given-1", "x.x-each-given-1", "x.x-each-given-2", "x.x-then-1"]
 
 
+PICKS_AND_PLACES = "Given: <a> can reach <b> before <s> When: <a> picks <b> and places it at <c> Then:"
+
+
 @pytest.mark.parametrize(
     ("clauses", "duration"),
     [
@@ -193,6 +196,19 @@ def test_clauses_inside_expressions_are_named_too() -> None:
         ("When: <a> picks <b> Then: <a> can reach <b> from <s> until <t>", ("s", "t")),
         ("When: <a> picks <b> from <s> until <t> Then: <a> can reach <b> after <u>", ("s", "t")),
         ("When: <a> picks <b> Then: <a> can reach <b> after <t>", None),
+        # The end of picking is not the end of the behaviour, whatever the order of the clauses.
+        (f"{PICKS_AND_PLACES} <b> is held by <a> after <pickup_end> <b> is located at <c> after <done>", ("s", "done")),
+        (
+            f"{PICKS_AND_PLACES} <b> is held by <a> after <held> <b> is located at <c> after <place_end>",
+            ("s", "place_end"),
+        ),
+        (f"{PICKS_AND_PLACES} <b> is held by <a> after <held> <b> is located at <c> after <done>", None),
+        (f"{PICKS_AND_PLACES} <b> is held by <a> after <pick_end>", None),
+        (
+            "Given: <a> can reach <b> before <r> <a> can reach <b> before <pick_start> When: <a> picks <b> "
+            "Then: <a> can reach <b> after <t>",
+            ("pick_start", "t"),
+        ),
     ],
 )
 def test_a_behaviour_lasts_as_its_clauses_tell(clauses: str, duration: tuple[str, str] | None) -> None:

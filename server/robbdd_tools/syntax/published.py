@@ -2,7 +2,8 @@
 
 A clause is named after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI and
 can be referred to; names used in the text are not generated again. A behaviour lasts from the event before which
-something is given until the event after which something holds; a scenario lasts as long as its behaviour.
+something is given until the event after which something holds, if these are certain; a scenario lasts as long as its
+behaviour.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from dataclasses import dataclass, replace
 from itertools import count
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.catalog.event_names import inner_event
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.bdd_tree import (
     After,
     Before,
@@ -30,7 +33,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Variant,
     When,
 )
-from robbdd_tools.syntax.scene_tree import Name
+from robbdd_tools.syntax.scene_tree import Name, Ref
 
 
 def unnamed_at(span: Span) -> Name:
@@ -117,9 +120,27 @@ def _duration(behaviour: BehaviourUse, body: Body) -> During | None:
     before = [time.event for time in _times(body.given) if isinstance(time, Before)]
     after = [time.event for time in _times(body.then) if isinstance(time, After)]
     while_it_lasts = [time for time in _times(body.then) if isinstance(time, During)]
-    start = before[:1] or [time.start for time in while_it_lasts[:1]]
-    end = after[:1] or [time.end for time in while_it_lasts[:1]]
-    return During(behaviour.span, start[0], end[0], some_time=False) if start and end else None
+    events = load_catalog().behaviours[behaviour.action.word].events
+    start = _bound(events, events[0], before, [time.start for time in while_it_lasts])
+    end = _bound(events, events[-1], after, [time.end for time in while_it_lasts])
+    return None if start is None or end is None else During(behaviour.span, start, end, some_time=False)
+
+
+def _bound(events: tuple[str, ...], bound: str, *groups: list[Ref]) -> Ref | None:
+    """Return the event in the text that is the first or the last one of a behaviour, called ``bound`` in the catalog.
+
+    It is the one with this name. Otherwise it is the only event, in the first group that has any, without the name of
+    another event of the behaviour; if there are several, it is uncertain.
+    """
+    meanings = [[(ref, inner_event(ref.path, events)) for ref in group] for group in groups]
+    named = [ref for group in meanings for ref, meaning in group if meaning == bound]
+    if named:
+        return named[0]
+    for group in meanings:
+        others = [ref for ref, meaning in group if meaning is None]
+        if others:
+            return others[0] if len({ref.path for ref in others}) == 1 else None
+    return None
 
 
 def _times(expression: Expression | None) -> Iterator[TimeConstraint]:
