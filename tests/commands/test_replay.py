@@ -128,16 +128,28 @@ def test_tightened_and_loosened_clauses_are_judged_on_the_old_trace(folder: Path
 
 def test_what_the_trace_does_not_tell_is_unknown(folder: Path) -> None:
     edit(folder, "<goal>, after <evt-place-end>", "<goal>, 60 seconds after <evt-place-end>")
-    found = clause(judged(folder, 1), "within 60")
+    found = clause(judged(folder, 1), "for 60")
     assert (found["verdict"], found["robustness"]) == ("unknown", None)
-    assert "the execution ended at" in found["reason"]
+    assert re.fullmatch(
+        r"the stored trace ends at \d+\.\d\d s, before \d+\.\d\d s when the window closes: execute a new run",
+        found["reason"],
+    )
+    edit(folder, "60 seconds after <evt-place-end>", "60 seconds before <evt-place-end>")
+    found = clause(judged(folder, 1), "for 60")
+    assert re.fullmatch(
+        r"the stored trace begins \d+\.\d\d s before event crit:evt-place-end, not 60 s: execute a new run",
+        found["reason"],
+    )
+    edit(folder, "60 seconds before <evt-place-end>", "60 seconds after <evt-place-end>")
     edit(folder, "60 seconds after <evt-place-end>", "after <evt-end>")
     found = clause(judged(folder, 1), 'after event "crit:evt-end"')
-    assert re.fullmatch(r"the stored trace ends at \d+\.\d\d s, before event crit:evt-end", found["reason"])
+    assert re.fullmatch(
+        r"the stored trace ends at \d+\.\d\d s, before event crit:evt-end: execute a new run", found["reason"]
+    )
     edit(folder, "<goal>, after <evt-end>", "<goal>, after <evt-place-start>")
     edit(folder, "Event (ns=crit) evt-end", "Event (ns=crit) evt-end\nEvent (ns=crit) evt-place-start")
     found = clause(judged(folder, 1), "place-start")
-    assert found["reason"] == "the stored trace has no record of event crit:evt-place-start"
+    assert found["reason"] == "the stored trace has no record of event crit:evt-place-start: execute a new run"
 
 
 def test_a_changed_scene_needs_a_new_run(folder: Path) -> None:

@@ -7,6 +7,8 @@ export interface Appearance {
   readonly verdict: "holds" | "violated" | "unknown";
   /** The text has changed since. */
   readonly stale: boolean;
+  /** Stored traces were judged by the edited clause; no execution has shown the verdict. */
+  readonly rejudged: boolean;
 }
 
 /** Text before or after a place of a document, with its tooltip. */
@@ -27,12 +29,13 @@ export function appearanceOf(shown: object): Appearance | undefined {
     return undefined;
   }
   const verdict = data["verdict"] === "holds" || data["verdict"] === "violated" ? data["verdict"] : "unknown";
-  return { verdict, stale: data["stale"] === true };
+  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true };
 }
 
 /**
  * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause: after it, the editor draws
- * the failure of the test over everything else.
+ * the failure of the test over everything else. A verdict that was re-judged is drawn after its clause, because
+ * someone is typing there.
  */
 export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {
@@ -46,7 +49,7 @@ export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[])
     const mark = { ...appearance, words, line, tooltip };
     const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
     // The editor draws nothing at the row of a table.
-    return appearance.verdict === "holds" || text[first] === "|"
+    return appearance.verdict === "holds" || appearance.rejudged || text[first] === "|"
       ? [{ ...mark, character, side: "after" }]
       : [{ ...mark, character: first, side: "before" }];
   });

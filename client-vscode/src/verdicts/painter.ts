@@ -106,11 +106,11 @@ class Layer implements vscode.Disposable {
   }
 }
 
-function decoration({ verdict, stale, words, line, character, side, tooltip }: Mark): vscode.DecorationOptions {
+function decoration({ verdict, stale, rejudged, words, line, character, side, tooltip }: Mark): vscode.DecorationOptions {
   const text: vscode.ThemableDecorationAttachmentRenderOptions = {
     contentText: words,
     color: new vscode.ThemeColor(`robbdd.${stale ? "stale" : verdict}Foreground`),
-    fontStyle: stale ? "italic" : "normal",
+    fontStyle: stale || rejudged ? "italic" : "normal",
     margin: side === "after" ? `0 0 0 ${GAP}` : `0 ${GAP} 0 0`,
   };
   return {

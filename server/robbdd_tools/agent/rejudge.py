@@ -9,8 +9,9 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.printed_output import Printed, finish_output
@@ -20,10 +21,10 @@ from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.margin_ranges import margin_ranges
-from robbdd_tools.judging.scenario_clauses import behaviour_calls, clause_of, iteration_of, statement_of
+from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.contact import Contact
-from robbdd_tools.monitor.time import never_occurred, occurrences
+from robbdd_tools.monitor.time import TOLERANCE, After, Before, TimeConstraint, never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import EventOccurrence, fluents_of
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
@@ -39,12 +40,15 @@ from robbdd_tools.protocol.messages import (
     judged,
 )
 from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.protocol.spec_changes import AGAIN, CHANGED, change_of
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, scenario_key
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
 
+if TYPE_CHECKING:
+    from robbdd_tools.monitor.trace import Trace
+
 UNKNOWN_SCENARIO = "the stored run has no scenario with these values"
-CHANGED = "{} changed since the run: execute a new run"
 
 
 class StoredTraces:
@@ -66,14 +70,14 @@ class StoredTraces:
         for clause in spec.clauses:
             if isinstance(found, Verdict):
                 yield clause, found
-            elif clause.role == "when":
-                yield clause, self._done(clause, found, index, spec, stored)
+            elif _is_behaviour(clause):
+                yield clause, self._done(clause, index, spec, stored)
             else:
-                yield clause, _decided(clause, found, spec, stored)
+                yield clause, decided_on_trace(clause, found, replace(spec, seed=stored.seed), stored.events)
 
     def _evidence(self, index: int, spec: ScenarioSpec, stored: ScenarioSpec) -> Evidence | Verdict:
         """Return the trace of an execution. If there is no usable trace, return the verdict on all its clauses."""
-        reason = _change(spec, stored)
+        reason = change_of(spec, stored)
         if reason:
             return unknown(reason, Cause.CHANGED)
         try:
@@ -92,7 +96,7 @@ class StoredTraces:
         They are used to find clauses that prove little.
         """
         index, stored = self._specs.get(scenario_key(spec), (0, None))
-        if stored is None or _change(spec, stored):
+        if stored is None or change_of(spec, stored):
             return
         try:
             evidence = read_trace(trace_file(self._folder, index))
@@ -116,22 +120,8 @@ class StoredTraces:
         clauses = [clause_of(clause, spec) for clause in spec.clauses if clause.role != "when"]
         return unnamed_contacts(clauses, evidence.trace, evidence.regions)
 
-    def _done(
-        self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec, stored: ScenarioSpec
-    ) -> Verdict:
-        """Return the verdict on a When clause.
-
-        It follows from an event of the trace, or from the behaviour's stored result.
-        """
-        statement = statement_of(clause)
-        if isinstance(statement, EventOccurrence):
-            event, trace, iteration = statement.event, evidence.trace, iteration_of(clause)
-            time = trace.event_time(event, iteration)
-            if time is None:
-                if trace.unreached:
-                    return unknown(trace.unreached, Cause.UNREACHED)
-                return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
-            return Verdict(Outcome.HOLDS, at=time)
+    def _done(self, clause: ClauseSpec, index: int, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
+        """Return the stored verdict on a behaviour."""
         entry = _stored_behaviour(clause, spec, stored, self._results[index]["clauses"])
         if entry is None:
             return unknown(CHANGED.format("the behaviour"), Cause.CHANGED)
@@ -154,27 +144,64 @@ def _is_behaviour(clause: ClauseSpec) -> bool:
     return clause.role == "when" and not isinstance(statement_of(clause), EventOccurrence)
 
 
-def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
-    """Return the reason why a trace is no evidence for an edited scenario; empty if it is evidence."""
-    if spec.scene != stored.scene:
-        return CHANGED.format("the scene")
-    if (spec.tree, spec.node) != (stored.tree, stored.node):
-        return CHANGED.format("the behaviour tree")
-    if behaviour_calls(spec) != behaviour_calls(stored):
-        return CHANGED.format("the behaviour")
+def decided_on_trace(
+    clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, recorded: Mapping[str, str]
+) -> Verdict:
+    """Return the verdict of a stored trace on a clause that is not a behaviour.
+
+    ``recorded`` are the events of the stored execution with their emitters, as ``events`` of its scenario. ``spec`` is
+    the edited scenario. Its ``seed`` must be that of the execution, because noise of observations follows from it.
+    """
+    trace, statement = evidence.trace, statement_of(clause)
+    if isinstance(statement, EventOccurrence):
+        event, iteration = statement.event, iteration_of(clause)
+        return _unrecorded(event, spec, recorded) or _occurred(trace, event, iteration)
+    read = clause_of(clause, spec)
+    for fluent in fluents_of(read):
+        for event, iteration in occurrences(fluent.time):
+            problem = _unrecorded(event, spec, recorded)
+            if problem is not None:
+                return problem
+            # The run simulated only as far as its own clauses needed.
+            if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
+                reason = f"the stored trace ends at {trace.end:.2f} s, before event {event}: {AGAIN}"
+                return unknown(reason, Cause.NO_RECORD)
+    found = decide(read, trace, evidence.regions, spec.events.keys())
+    # A new run records as long as its clauses need.
+    beyond = next(filter(None, (_beyond(fluent.time, trace) for fluent in fluents_of(read))), "")
+    return unknown(beyond, Cause.NO_RECORD) if beyond and found.outcome is Outcome.UNKNOWN else found
+
+
+def _beyond(time: TimeConstraint, trace: Trace) -> str:
+    """Return the reason why a window is not within a trace; empty if it is, or if its event did not occur."""
+    if not isinstance(time, After | Before):
+        return ""
+    at, horizon = trace.event_time(time.event, time.iteration), time.horizon or 0.0
+    if at is None:
+        return ""
+    if isinstance(time, After) and trace.end < at + horizon - TOLERANCE:
+        return (
+            f"the stored trace ends at {trace.end:.2f} s, before {at + horizon:.2f} s when the window closes: {AGAIN}"
+        )
+    if isinstance(time, Before) and at < horizon - TOLERANCE:
+        return f"the stored trace begins {at:.2f} s before event {time.event}, not {horizon:g} s: {AGAIN}"
     return ""
 
 
-def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
-    read, trace = clause_of(clause, spec), evidence.trace
-    for fluent in fluents_of(read):
-        for event, iteration in occurrences(fluent.time):
-            if event in spec.events and spec.events[event] != stored.events.get(event):
-                return unknown(f"the stored trace has no record of event {event}", Cause.NO_RECORD)
-            # The run simulated only as far as its own clauses needed.
-            if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
-                return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}", Cause.NO_RECORD)
-    return decide(read, trace, evidence.regions, spec.events.keys())
+def _unrecorded(event: str, spec: ScenarioSpec, recorded: Mapping[str, str]) -> Verdict | None:
+    """Return the verdict on a clause if the stored execution did not record its event; otherwise ``None``."""
+    if event in spec.events and spec.events[event] != recorded.get(event):
+        return unknown(f"the stored trace has no record of event {event}: {AGAIN}", Cause.NO_RECORD)
+    return None
+
+
+def _occurred(trace: Trace, event: str, iteration: int) -> Verdict:
+    time = trace.event_time(event, iteration)
+    if time is not None:
+        return Verdict(Outcome.HOLDS, at=time)
+    if trace.unreached:
+        return unknown(trace.unreached, Cause.UNREACHED)
+    return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
 
 
 def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.features.rejudged_results import BADNESS, MARK, SIGNS, RejudgedResult, rejudged_result
 from robbdd_tools.features.run_verdicts import digest, execution_digest, variant_digest
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.variant_places import variants_of
@@ -19,10 +20,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variant_places import PlacedVariant
 
-SIGNS = {"holds": "✔", "violated": "✗", "unknown": "?", "undefined": "?"}
 STALE, VACUOUS = "(stale)", "(vacuous)"
+_REJUDGED = "Re-judged on stored traces, not executed: run it to be sure."
 _CHANGED = "The text has changed since this was judged: run it again."
-_BADNESS = ("violated", "undefined", "unknown", "holds")
 MAX_LINES = 20
 """Maximum number of variations in a tooltip."""
 MAX_LINES_OF_FAILURES = 5
@@ -41,6 +41,7 @@ class ResultHint:
     - ``vacuous``: the reason why the clause could not have failed.
     - ``substitutions``: the catalog behaviours that were executed instead of the model's, and the chosen
       scene instances.
+    - ``rejudged``: the result of stored traces on the edited clause; no execution has shown it.
     """
 
     span: Span
@@ -53,11 +54,13 @@ class ResultHint:
     worst: Judged | None = None
     vacuous: str = ""
     substitutions: tuple[str, ...] = ()
+    rejudged: RejudgedResult | None = None
 
     @property
     def tooltip(self) -> str:
         """The full text of the hint. It is shortened if there are many variations."""
-        remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
+        remarks = [_CHANGED] * self.stale if self.rejudged is None else [_REJUDGED] * self.rejudged.usable
+        remarks += [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
         remarks += self.substitutions
         return "\n".join((*remarks, *_shortened(self.lines, MAX_LINES)))
 
@@ -79,7 +82,8 @@ class PassRate:
 
 def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
     """Return the data by which clients colour a result."""
-    return {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
+    found = {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
+    return {**found, "rejudged": True} if isinstance(shown, ResultHint) and shown.rejudged is not None else found
 
 
 def verdict_of(outcome: str) -> str:
@@ -90,11 +94,14 @@ def verdict_of(outcome: str) -> str:
 def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
     """Return a hint for each clause of a file with results."""
     hints: list[ResultHint] = []
-    for clause in clauses_in(snapshot, uri) if findings.clauses else ():
-        judged = findings.clauses.get(clause.iri, ())
-        now = digest(snapshot, uri, clause.span) if judged else ""
+    for clause in clauses_in(snapshot, uri) if findings.variants else ():
+        judged, edited = findings.clauses.get(clause.iri, ()), findings.rejudged.get(clause.iri, ())
+        now = digest(snapshot, uri, clause.span) if judged or edited else ""
+        rejudged = [one for one in edited if one.judgement is None or one.judgement.digest == now]
         fresh = [entry for entry in judged if entry[1].digest == now]
-        if judged:
+        if rejudged:
+            hints.append(_rejudged_hint(clause, rejudged_result(rejudged, judged, now)))
+        elif judged:
             hints.append(_clause_hint(clause, fresh or judged, stale=not fresh))
     return hints
 
@@ -156,6 +163,8 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
     hints = clause_hints(snapshot, uri, findings)
     followers = _followers(hints)
     for hint in hints:
+        if hint.rejudged is not None:
+            found += _rejudged_diagnostic(uri, hint, hint.rejudged, 0 if brief else MAX_LINES_OF_FAILURES)
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.head, Severity.HINT, "clause-vacuous", message))
@@ -173,6 +182,18 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
             related += tuple(Related(uri, one.head, "unknown for the same reason") for one in others[1:])
             found.append(Diagnostic(uri, hint.head, severity, f"clause-{hint.outcome}", message, related))
     return found
+
+
+def _rejudged_diagnostic(uri: str, hint: ResultHint, rejudged: RejudgedResult, most: int) -> Iterator[Diagnostic]:
+    """Yield a diagnostic if stored traces do not all satisfy an edited clause, or if some of them flip.
+
+    ``most`` is the maximum number of executions in it.
+    """
+    if not rejudged.usable or (rejudged.outcome == "holds" and not rejudged.flipped):
+        return
+    first = f"{' · '.join(filter(None, (rejudged.reason, rejudged.counts)))} {MARK}"
+    message = "\n".join((first, *_shortened(rejudged.lines, most))) if most else first
+    yield Diagnostic(uri, hint.head, Severity.INFORMATION, "clause-rejudged", message)
 
 
 def _causes(hint: ResultHint) -> tuple[tuple[int, str], ...]:
@@ -244,6 +265,12 @@ def _clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool)
     )
 
 
+def _rejudged_hint(clause: PlacedClause, found: RejudgedResult) -> ResultHint:
+    return ResultHint(
+        clause.span, clause.head, found.label, found.outcome, found.lines, stale=not found.usable, rejudged=found
+    )
+
+
 def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:
     outcome = _worst(scenario.outcome for scenario in scenarios)
     failed = dict.fromkeys(
@@ -269,7 +296,7 @@ def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
 
 
 def _worst(outcomes: Iterable[str]) -> str:
-    return min(outcomes, key=_BADNESS.index)
+    return min(outcomes, key=BADNESS.index)
 
 
 def _shortened(lines: Sequence[str], most: int) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, pass_rate, substitutions
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.references import uses
+from robbdd_tools.features.rejudged_results import MARK
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, condition_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of, story_sites
@@ -241,6 +242,8 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
 def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
     age = "Last results, before the text was edited" if hint.stale else "Last results"
+    if hint.rejudged is not None and hint.rejudged.usable:
+        age = f"{hint.rejudged.counts} {MARK}"
     lines = [f"- {literal(line)}" for line in hint.lines[:MAX_LISTED]]
     vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
     substituted = [f"- {literal(words)}" for words in hint.substitutions]

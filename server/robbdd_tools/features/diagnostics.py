@@ -70,16 +70,21 @@ def shape_diagnostics(
     return without_superseded(found, reported)
 
 
-def all_diagnostics(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> list[Diagnostic]:
-    """Return every diagnostic of a file and its imports, sorted by file and place.
-
-    ``together``: files that import each other, among them this one, which are validated together.
-    """
+def text_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+    """Return the diagnostics of a file and its imports that concern syntax, names and rules, without duplicates."""
     found = dict.fromkeys(fast_diagnostics(snapshot, uri))
     if snapshot.file(uri) is not None:
         for analysis in snapshot.closure(uri)[1:]:
             found |= dict.fromkeys(fast_diagnostics(snapshot, analysis.document.uri))
         for part in snapshot.joined.get(uri, ()):
             found |= dict.fromkeys(fast_diagnostics(snapshot, part))
-        found |= dict.fromkeys(shape_diagnostics(snapshot, uri, together=together))
+    return list(found)
+
+
+def all_diagnostics(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> list[Diagnostic]:
+    """Return every diagnostic of a file and its imports, sorted by file and place.
+
+    ``together``: files that import each other, among them this one, which are validated together.
+    """
+    found = dict.fromkeys((*text_diagnostics(snapshot, uri), *shape_diagnostics(snapshot, uri, together=together)))
     return sorted(found, key=lambda diagnostic: (diagnostic.uri != uri, sort_key(diagnostic)))

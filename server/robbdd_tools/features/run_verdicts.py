@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
@@ -113,11 +114,45 @@ Judged = tuple[JudgedScenario, Judgement]
 
 
 @dataclass(frozen=True, slots=True)
+class RejudgedExecution:
+    """The edited clauses of a stored execution, re-judged on its trace, by IRI.
+
+    ``reason`` is the reason why the trace is no evidence for the edited scenario; then no clause is judged.
+    """
+
+    reason: str = ""
+    clauses: Mapping[str, Judgement] = field(default_factory=dict[str, Judgement])
+
+
+@dataclass(frozen=True, slots=True)
+class RejudgedClause:
+    """A clause of a stored execution after an edit.
+
+    - ``judgement``: the verdict of the trace on the edited clause; ``None`` if the trace is no evidence.
+    - ``before``: the verdict of the run, if it judged the clause.
+    - ``reason``: the reason why the trace is no evidence.
+    """
+
+    scenario: JudgedScenario
+    judgement: Judgement | None
+    before: Judgement | None
+    reason: str = ""
+
+
+RejudgedExecutions = Mapping[str, Mapping[tuple[int, int], RejudgedExecution]]
+"""For each model, the executions that its edits concern, by the numbers of their run and of the execution."""
+
+
+@dataclass(frozen=True, slots=True)
 class Findings:
-    """The results at one moment: verdicts for each clause, and scenarios for each variant."""
+    """The results at one moment: verdicts for each clause, and scenarios for each variant.
+
+    ``rejudged`` are the verdicts of stored traces on clauses that were edited since their run.
+    """
 
     clauses: Mapping[str, tuple[Judged, ...]]
     variants: Mapping[str, tuple[JudgedScenario, ...]]
+    rejudged: Mapping[str, tuple[RejudgedClause, ...]] = field(default_factory=dict[str, tuple[RejudgedClause, ...]])
 
 
 NOTHING = Findings({}, {})
@@ -184,18 +219,35 @@ class Results:
         for entry in [entry for entry in self if entry.model == model and entry.execution not in known]:
             self.discard(entry)
 
-    def findings(self) -> Findings:
-        """Return the current results."""
+    def findings(self, rejudged: RejudgedExecutions = MappingProxyType({})) -> Findings:
+        """Return the current results, with those of stored traces on edited clauses."""
         clauses: dict[str, list[Judged]] = {}
         variants: dict[str, list[JudgedScenario]] = {}
+        edited: dict[str, list[RejudgedClause]] = {}
         for scenario in self:
+            for iri, judged in _rejudged_clauses(scenario, rejudged.get(scenario.model, {})):
+                edited.setdefault(iri, []).append(judged)
             variants.setdefault(scenario.variant, []).append(scenario)
             for iri, judgement in scenario.clauses.items():
                 clauses.setdefault(iri, []).append((scenario, judgement))
         return Findings(
             {iri: tuple(judged) for iri, judged in clauses.items()},
             {iri: tuple(scenarios) for iri, scenarios in variants.items()},
+            {iri: tuple(judged) for iri, judged in edited.items()},
         )
+
+
+def _rejudged_clauses(
+    scenario: JudgedScenario, rejudged: Mapping[tuple[int, int], RejudgedExecution]
+) -> Iterator[tuple[str, RejudgedClause]]:
+    found = rejudged.get((scenario.run, scenario.index))
+    if found is None:
+        return
+    if found.reason:
+        for iri, before in scenario.clauses.items():
+            yield iri, RejudgedClause(scenario, None, before, found.reason)
+    for iri, judgement in found.clauses.items():
+        yield iri, RejudgedClause(scenario, judgement, scenario.clauses.get(iri))
 
 
 def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) -> bool:

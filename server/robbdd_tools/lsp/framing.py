@@ -1,19 +1,21 @@
-"""The messages between the server and the validation process.
+"""The messages between the server and its processes: the validation process, and the one that re-judges edits.
 
 A frame consists of a length (4 bytes, big endian) and a pickled object. The server sends tuples of ``Request`` and
 ``Forget``, in which a shared text is stored once. The process sends ``Begun`` and ``Answer``. Both ends belong to the
 same installation. A request replaces an older one for the same file, even while that is being validated, but only a
-limited number of times.
+limited number of times. The server sends ``Edited`` to the other process, which answers with ``Rejudged``.
 """
 
 from __future__ import annotations
 
 import pickle
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document
+from robbdd_tools.features.run_verdicts import RejudgedExecution
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 
 LENGTH = struct.Struct(">I")
@@ -71,7 +73,49 @@ class Answer:
     documents: dict[str, Document] = field(default_factory=dict[str, Document])
 
 
-def frame(content: tuple[Request | Forget, ...] | Begun | Answer) -> bytes:
-    """Return messages as one frame."""
+Execution = tuple[int, int]
+"""The number of a stored run, and of an execution in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edited:
+    """The texts of the open files after an edit that concerns the model ``uri``.
+
+    - ``store``: the folder of the model's stored runs.
+    - ``executions``: the shown executions: for each run, their numbers.
+    """
+
+    revision: int
+    uri: str
+    texts: Mapping[str, tuple[int, str]]
+    store: str
+    executions: Mapping[int, tuple[int, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Rejudged:
+    """Executions of a model whose clauses were re-judged, or that cannot be re-judged.
+
+    - ``executions``: results by run and number of the execution.
+    - ``done`` and ``total``: how many of the executions that the edits concern have been answered, and how many
+      there are.
+    - ``problem``: why nothing was judged.
+    """
+
+    revision: int
+    uri: str
+    executions: Mapping[Execution, RejudgedExecution]
+    done: int
+    total: int
+    problem: str = ""
+
+    @property
+    def is_last(self) -> bool:
+        """Whether this is the last message about the revision."""
+        return bool(self.problem) or self.done == self.total
+
+
+def frame(content: object) -> bytes:
+    """Return a message, or a tuple of messages, as one frame."""
     data = pickle.dumps(content)
     return LENGTH.pack(len(data)) + data

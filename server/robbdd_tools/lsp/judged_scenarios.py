@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.messages import never_judged
 from robbdd_tools.run.report import failure_words, margin, values_words, verdict_words
 
 if TYPE_CHECKING:
@@ -58,3 +59,8 @@ def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, share
         fault=message.fault or (shared_fault if outcome is Outcome.UNKNOWN else ""),
         failure=failure_words(message, clause),
     )
+
+
+def refused_judgement(clause: ClauseSpec, reason: str, digests: Digests) -> Judgement:
+    """Return the verdict *unknown* on an edited clause that cannot be judged on a stored trace."""
+    return judgement(clause, never_judged(0, clause.line, reason, Cause.CHANGED), digests)

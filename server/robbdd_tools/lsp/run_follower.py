@@ -61,6 +61,7 @@ class RunFollower:
         self._ls.show_results(uris)
         await self._ls.show_changed()
         await self._ls.stored_verdicts.save()
+        self._ls.rejudging.results_changed()
         # A finished run can be replayed.
         self._ls.refreshes.want(LENSES)
 

@@ -30,6 +30,7 @@ from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.lsp.latest_wins import LatestWins
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
+from robbdd_tools.lsp.rejudging import Rejudging
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.run_stores import Stores
 from robbdd_tools.lsp.shape_findings import ShapeFindings
@@ -92,6 +93,7 @@ class RobbddServer(LanguageServer):
         self.importers = Importers(self)
         self.survey = WorkspaceDiagnostics(self)
         self.user_errors = UserErrors(self)
+        self.rejudging = Rejudging(self)
         self._tasks: set[asyncio.Task[None]] = set()
         self._publishing = LatestWins(self.spawn)
         self._changed: dict[str, None] = {}
@@ -141,6 +143,7 @@ class RobbddServer(LanguageServer):
             return
         await self.publish(uri)
         self.survey.schedule([uri])
+        self.rejudging.edited(uri, opened=is_new)
         await self.user_errors.refresh()
 
     async def text_closed(self, uri: str) -> None:
@@ -167,6 +170,8 @@ class RobbddServer(LanguageServer):
         await self._in_thread(forget)
         await self.importers.look_around()
         self.refreshes.want(COLOURS, HINTS, LENSES)
+        for uri in uris:
+            self.rejudging.edited(uri)
         await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
@@ -236,7 +241,7 @@ class RobbddServer(LanguageServer):
     async def show_changed(self) -> None:
         """Show the results that are waiting to be shown."""
         changed, self._changed = self._changed, {}
-        self.findings = self.results.findings()
+        self.findings = self.results.findings(self.rejudging.executions)
         self.refreshes.want(HINTS, LENSES)
         await self._show_diagnostics(changed)
         await self.user_errors.refresh()
@@ -289,6 +294,7 @@ class RobbddServer(LanguageServer):
             self.run.cancel()
         self.validator.stop()
         self.survey.stop()
+        self.rejudging.stop()
         self._background.stop()
         self.stores.close()
         self._analysis.stop()

@@ -68,6 +68,7 @@ class StoredVerdicts:
         results.add(in_progress)
         ls.results = results
         ls.show_results(ls.opened())
+        ls.rejudging.results_changed()
         models = dict.fromkeys(scenario.model for scenario in kept.scenarios)
         paths = [*ls.folders(), *filter(None, map(uri_to_path, models))]
         await self.refresh([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
@@ -98,6 +99,7 @@ class StoredVerdicts:
                     ls.results.merge(run.scenarios, newest, some_repetitions=run.some_repetitions)
             if changed:
                 ls.show_results(ls.opened())
+                ls.rejudging.results_changed()
                 await self.save()
 
     async def save(self) -> None:

@@ -6,7 +6,7 @@ import pickle
 import sys
 import threading
 from dataclasses import dataclass, field
-from typing import BinaryIO
+from typing import BinaryIO, Generic, Protocol, TypeVar
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
@@ -17,31 +17,42 @@ from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
 
+
+class AboutFile(Protocol):
+    """A message about one file."""
+
+    @property
+    def uri(self) -> str:
+        """The file."""
+        ...
+
+
+Message = TypeVar("Message", bound=AboutFile)
 MAX_LEFT = 8
 """Validations of a file in a row that may be abandoned for a newer one; then one finishes even during typing."""
 
 
-class Inbox:
-    """The latest request for each file, in the order of the first requests for them.
+class Inbox(Generic[Message]):
+    """The latest message about each file, in the order of the first messages about them.
 
-    A thread reads the input during validation, so that the validation can detect that it is outdated.
+    A thread reads the input while a message is worked on, so that the work can detect that it is outdated.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
         self._changed = threading.Condition()
-        self._waiting: dict[str, Request | Forget] = {}
+        self._waiting: dict[str, Message] = {}
         self._ended = False
         threading.Thread(target=self._read, name="inbox", daemon=True).start()
 
-    def take(self) -> Request | Forget | None:
-        """Wait for a request and return it; return ``None`` at the end of the input."""
+    def take(self) -> Message | None:
+        """Wait for a message and return it; return ``None`` at the end of the input."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended)
             return None if self._ended else self._waiting.pop(next(iter(self._waiting)))
 
     def has_newer(self, uri: str) -> bool:
-        """Return whether the work on a file is outdated, because a newer request is waiting or the input has ended."""
+        """Return whether the work on a file is outdated, because a newer message is waiting or the input has ended."""
         return self._ended or uri in self._waiting
 
     def _read(self) -> None:
@@ -50,7 +61,7 @@ class Inbox:
             body = self._stream.read(LENGTH.unpack(head)[0]) if len(head) == LENGTH.size else b""
             with self._changed:
                 if body:
-                    messages: tuple[Request | Forget, ...] = pickle.loads(body)
+                    messages: tuple[Message, ...] = pickle.loads(body)
                     self._waiting |= {message.uri: message for message in messages}
                 self._ended = not body
                 self._changed.notify_all()
@@ -62,7 +73,7 @@ class Inbox:
 class Worker:
     """The state of the process between two requests."""
 
-    inbox: Inbox
+    inbox: Inbox[Request | Forget]
     project: Project = field(default_factory=Project)
     validations: dict[str, Validation] = field(default_factory=dict[str, Validation])
     left: dict[str, int] = field(default_factory=dict[str, int])
@@ -126,7 +137,8 @@ def main(in_passing: bool = False) -> None:
     # Output of libraries must not get between the frames.
     sys.stdout = sys.stderr
     collect_rarely()
-    worker = Worker(Inbox(sys.stdin.buffer))
+    inbox: Inbox[Request | Forget] = Inbox(sys.stdin.buffer)
+    worker = Worker(inbox)
 
     def tell(message: Begun | Answer) -> None:
         stdout.write(frame(message))

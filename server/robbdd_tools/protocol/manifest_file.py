@@ -61,16 +61,25 @@ def read_manifest(folder: Path) -> Manifest:
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
     trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
     instances = {entry["iri"]: from_plain(SceneInstance, entry) for entry in data.get("instances", ())}
-    scenarios = tuple(_scenario(entry, executions, trees, instances) for entry in data["scenarios"])
+    scenarios = tuple(read_scenario(entry, executions, trees, instances) for entry in data["scenarios"])
     return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False), data.get("sources", {}))
 
 
-def _scenario(
+def scenario_text(spec: ScenarioSpec) -> str:
+    """Return a scenario as JSON, as in a manifest: with the names of its execution, scene instance and tree."""
+    return _json(spec)
+
+
+def read_scenario(
     entry: dict[str, Any],
     executions: Mapping[str, ExecutionSpec],
     trees: Mapping[str, TreeSpec],
     instances: Mapping[str, SceneInstance],
 ) -> ScenarioSpec:
+    """Return the scenario in JSON data of a manifest, whose parts are given by IRI and name.
+
+    Raises ``ValueError``, ``KeyError`` or ``TypeError``.
+    """
     scene = entry.pop("scene")
     clauses = entry.pop("clauses")
     execution, tree = entry.pop("execution", None), entry.pop("tree", None)

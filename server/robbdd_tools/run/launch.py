@@ -74,9 +74,13 @@ class Agent:
 
     def execute(self, index: int) -> None:
         """Order the agent to execute the scenario number ``index``. If the agent has ended, ``messages`` ends, too."""
+        self.order(encode(Execute(index)))
+
+    def order(self, line: str) -> None:
+        """Send an order of one line. If the process has ended, ``messages`` ends, too."""
         assert self._process.stdin is not None
         try:
-            self._process.stdin.write(encode(Execute(index)) + "\n")
+            self._process.stdin.write(line + "\n")
             self._process.stdin.flush()
         except (OSError, ValueError):  # the pipe is broken or already closed
             pass

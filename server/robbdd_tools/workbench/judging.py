@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -128,6 +128,20 @@ class Judgement:
             self.progress.close(self.ending)
 
 
+def selection_of(place: StoredRun, manifest: Manifest, keys: Collection[str]) -> Selection:
+    """Return the selection of the scenarios with some keys, with the seed and the choices of their stored run.
+
+    Raises ``NoSuchRun``.
+    """
+    return Selection(
+        only=lambda spec: scenario_key(spec) in keys,
+        seed=place.record().user_seed,
+        default_seed=manifest.seed,
+        default_substitutions=substitutions_of(manifest.scenarios),
+        default_instances=instances_of(manifest.scenarios),
+    )
+
+
 def _possible(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
     """Yield messages. A message that the judging process cannot have sent is replaced by a log message."""
     present = None
@@ -144,13 +158,7 @@ def _prepared(place: StoredRun, model: Model, folder: Path) -> Manifest:
         raise NothingToJudge(f"run {place.number or place.folder} has finished no execution yet")
     known = {scenario_key(manifest.scenarios[index]) for index in finished}
     repeat = max(spec.repetition for spec in manifest.scenarios)
-    selection = Selection(
-        only=lambda spec: scenario_key(spec) in known,
-        default_seed=manifest.seed,
-        default_substitutions=substitutions_of(manifest.scenarios),
-        default_instances=instances_of(manifest.scenarios),
-    )
-    plan = Plan.of(model, selection)
+    plan = Plan.of(model, selection_of(place, manifest, known))
     try:
         prepared = plan.prepare(folder, repeat=repeat if repeat > 1 else None)
     except NothingSelected:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.features.diagnostics import all_diagnostics, text_diagnostics
 from robbdd_tools.graph.write.foreign_imports import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
@@ -100,6 +100,18 @@ class ModelFile:
     def has_scenarios(self) -> bool:
         """Whether the model has scenarios to run. Raises ``ModelErrors``."""
         return any(story.variants for story in self.acceptance.stories)
+
+
+class DraftFile(ModelFile):
+    """A model that is being edited. Its shapes are not validated, because that takes longer than building its graph.
+
+    An editor validates them at the same time, and a run refuses a model that violates one.
+    """
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the file and its imports, without those of shapes."""
+        return tuple(text_diagnostics(self.snapshot, self.uri))
 
 
 @dataclass(frozen=True, eq=False)

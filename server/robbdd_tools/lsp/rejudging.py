@@ -1,0 +1,235 @@
+"""Re-judge stored traces after each edit, in a process of its own, and show the verdicts until the next run."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import pickle
+from asyncio.subprocess import Process
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from itertools import count
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from robbdd_tools.base.interpreter import start_worker
+from robbdd_tools.base.limits import VALIDATION_SECONDS
+from robbdd_tools.lsp.framing import LENGTH, Edited, Execution, Rejudged, frame
+
+if TYPE_CHECKING:
+    from robbdd_tools.features.run_verdicts import RejudgedExecution
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+PAUSE = 0.03
+"""Seconds in which successive keys are combined."""
+FIRST_PAUSE = 1.0
+"""Seconds after which the process is started for a document that has results but was not edited."""
+SHOWN_ABOVE = 100
+"""Number of executions above which the client shows progress."""
+# Not "-m": the messages' classes must have the same module name in both processes.
+_WORKER = "from robbdd_tools.lsp.rejudge_worker import main; main()"
+_LOG = logging.getLogger(__name__)
+
+
+class Rejudging:
+    """The verdicts of stored traces on edited clauses. They are shown, and never stored.
+
+    An edit of a model, or of a file that it imports, replaces the work on the previous one. Requests of the client do
+    not wait for any of it.
+    """
+
+    def __init__(self, server: RobbddServer) -> None:
+        self._server = server
+        self.executions: dict[str, dict[Execution, RejudgedExecution]] = {}
+        """The executions that edits concern, for each model."""
+        self._revisions = count(1)
+        self._asked: dict[str, Edited] = {}
+        """The latest unanswered request about each model."""
+        self._repeated = 0
+        """The revision that was requested again, because the process died over it."""
+        self._process: Process | None = None
+        self._starting = asyncio.Lock()
+        self._waiting: asyncio.Task[None] | None = None
+        self._edited: dict[str, None] = {}
+        self._progress: _Progress | None = None
+        self._watch: asyncio.TimerHandle | None = None
+        self._stopped = False
+
+    def edited(self, uri: str, *, opened: bool = False) -> None:
+        """Re-judge the models that a document belongs to, soon. ``opened`` is true if it was opened, not edited."""
+        if self._stopped or not any(True for _ in self._server.results):
+            return
+        if opened and self._waiting is not None:
+            return
+        self._edited[uri] = None
+        if self._waiting is not None:
+            self._waiting.cancel()
+        self._waiting = self._server.spawn(self._order_soon(FIRST_PAUSE if opened else PAUSE))
+
+    def results_changed(self) -> None:
+        """Re-judge the models of all open documents, because a run has ended or runs were read."""
+        for uri in self._server.opened():
+            self.edited(uri, opened=True)
+
+    def stop(self) -> None:
+        """Judge nothing more."""
+        self._stopped = True
+        if self._waiting is not None:
+            self._waiting.cancel()
+        self._end_process()
+
+    def _end_process(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+        if self._process is not None and self._process.returncode is None:
+            with suppress(ProcessLookupError):
+                self._process.kill()
+
+    async def _order_soon(self, pause: float) -> None:
+        await asyncio.sleep(pause)
+        self._waiting = None
+        edited, self._edited = self._edited, {}
+        executions = self._shown_executions()
+
+        def affected(snapshot: Snapshot) -> tuple[list[str], dict[str, tuple[int, str]]]:
+            reached = {uri: None for one in edited for uri in (one, *snapshot.importers(one))}
+            return [uri for uri in reached if uri in executions], self._server.project.texts()
+
+        models, texts = await self._server.analyse(affected, urgent=False)
+        orders = [await asyncio.to_thread(self._order, model, texts, executions[model]) for model in models]
+        self._asked |= {order.uri: order for order in orders}
+        if orders:
+            await self._send(orders)
+
+    def _shown_executions(self) -> dict[str, dict[int, list[int]]]:
+        """Return the numbers of all shown executions that are stored, by their model and their run."""
+        found: dict[str, dict[int, list[int]]] = {}
+        for scenario in self._server.results:
+            if scenario.run and scenario.finished:
+                found.setdefault(scenario.model, {}).setdefault(scenario.run, []).append(scenario.index)
+        return found
+
+    def _order(self, model: str, texts: Mapping[str, tuple[int, str]], executions: dict[int, list[int]]) -> Edited:
+        store = self._server.stores.of(model)
+        numbers = {run: tuple(indices) for run, indices in executions.items()}
+        return Edited(next(self._revisions), model, texts, str(store.folder), numbers)
+
+    async def _send(self, orders: Sequence[Edited]) -> None:
+        async with self._starting:
+            if self._process is None and not self._stopped:
+                self._process = await start_worker(_WORKER)
+                self._server.spawn(self._receive(self._process))
+        if self._process is None or self._stopped:
+            self._end_process()
+            return
+        assert self._process.stdin is not None
+        # What a dead process did not answer is requested again.
+        with suppress(ConnectionError):
+            self._process.stdin.write(frame(tuple(orders)))
+            await self._process.stdin.drain()
+        self._watch_it()
+
+    async def _receive(self, process: Process) -> None:
+        assert process.stdout is not None
+        with suppress(asyncio.IncompleteReadError, ConnectionError):
+            while True:
+                (length,) = LENGTH.unpack(await process.stdout.readexactly(LENGTH.size))
+                await self._take(pickle.loads(await process.stdout.readexactly(length)))
+        await process.wait()
+        self._process = None
+        if self._asked and not self._stopped:
+            await self._died(list(self._asked.values()))
+
+    async def _died(self, unanswered: Sequence[Edited]) -> None:
+        """Request again what the process has not answered; if it dies again, give up until the next edit."""
+        _LOG.warning("the process that re-judges edits ended unexpectedly")
+        newest = max(order.revision for order in unanswered)
+        if newest > self._repeated:
+            self._repeated = newest
+            await self._send(unanswered)
+            return
+        for order in unanswered:
+            self._replace(order.uri, {})
+        self._asked.clear()
+        self._end_progress()
+
+    async def _take(self, rejudged: Rejudged) -> None:
+        asked = self._asked.get(rejudged.uri)
+        if asked is None or asked.revision != rejudged.revision:
+            return
+        self._watch_it()
+        if rejudged.problem:
+            _LOG.info("%s is not re-judged: %s", rejudged.uri, rejudged.problem)
+        first = rejudged.done == len(rejudged.executions)
+        self._replace(rejudged.uri, {**({} if first else self.executions.get(rejudged.uri, {})), **rejudged.executions})
+        if rejudged.is_last:
+            del self._asked[rejudged.uri]
+        if rejudged.is_last and not self._asked:
+            self._end_progress()
+        elif rejudged.total > SHOWN_ABOVE:
+            self._progress = self._progress or _Progress(self._server, f"robbdd-rejudge-{rejudged.revision}")
+            await self._progress.report(rejudged.done, rejudged.total)
+
+    def _replace(self, model: str, executions: dict[Execution, RejudgedExecution]) -> None:
+        if executions != self.executions.get(model, {}):
+            self.executions[model] = executions
+            self._server.show_results(self._server.opened())
+
+    def _end_progress(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+        progress, self._progress = self._progress, None
+        if progress is not None:
+            progress.end()
+
+    def _watch_it(self) -> None:
+        """Restart the time limit of the next answer."""
+        if self._watch is not None:
+            self._watch.cancel()
+        self._watch = asyncio.get_running_loop().call_later(VALIDATION_SECONDS.value(), self._hangs)
+
+    def _hangs(self) -> None:
+        if self._asked:
+            _LOG.error("re-judging took longer than %s seconds and was given up", VALIDATION_SECONDS.value())
+            self._end_process()
+
+
+class _Progress:
+    """Work-done progress of the protocol. Nothing is sent to a client that does not support it or refuses it."""
+
+    def __init__(self, server: RobbddServer, token: str) -> None:
+        self._progress = server.work_done_progress
+        self._token = token
+        window = server.client_capabilities.window
+        self._is_shown = bool(window is not None and window.work_done_progress)
+        self._began = False
+
+    async def report(self, done: int, total: int) -> None:
+        """Report how many executions have been judged."""
+        if not self._began and self._is_shown:
+            await self._begin()
+        if self._is_shown:
+            words = f"{done:,} of {total:,} executions"
+            report = types.WorkDoneProgressReport(message=words, percentage=100 * done // total)
+            self._progress.report(self._token, report)
+
+    async def _begin(self) -> None:
+        try:
+            # pygls does not declare the type of the client's (empty) answer.
+            await self._progress.create_async(self._token)  # pyright: ignore[reportUnknownMemberType]
+        except JsonRpcException:
+            self._is_shown = False
+            return
+        self._began = True
+        begin = types.WorkDoneProgressBegin(title="Re-judging stored traces", percentage=0)
+        self._progress.begin(self._token, begin)
+
+    def end(self) -> None:
+        """End the progress."""
+        if self._began:
+            self._progress.end(self._token, types.WorkDoneProgressEnd(message="re-judged, not executed"))
+        # pygls keeps tokens forever, and does not declare the type of their values.
+        self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]

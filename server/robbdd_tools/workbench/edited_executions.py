@@ -1,0 +1,113 @@
+"""Compare the stored executions of a run with an edited model: which clauses to re-judge, and where a trace is no
+evidence.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.step_files import may_define
+from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.protocol.spec_changes import AGAIN, change_of, edited_clauses
+from robbdd_tools.protocol.specs import scenario_key
+from robbdd_tools.run.used_files import changed
+from robbdd_tools.workbench.judging import selection_of
+from robbdd_tools.workbench.plan import Plan
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
+    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.model import ModelFile
+
+GONE = f"the model no longer has this scenario with these values: {AGAIN}"
+
+
+@dataclass(frozen=True, slots=True)
+class EditedExecution:
+    """A stored execution whose scenario was edited since.
+
+    - ``index``: its number in the run.
+    - ``stored``: its scenario when it was executed.
+    - ``spec``: the edited scenario, with the clauses that can be re-judged only; ``None`` if there is a ``reason``.
+    - ``reason``: why the trace is no evidence for any clause of the edited scenario.
+    - ``refused``: the edited clauses that cannot be re-judged, each with the reason.
+    """
+
+    index: int
+    stored: ScenarioSpec
+    spec: ScenarioSpec | None
+    reason: str = ""
+    refused: tuple[tuple[ClauseSpec, str], ...] = ()
+
+
+def edited_executions(
+    place: StoredRun, manifest: Manifest, file: ModelFile, indices: Iterable[int], drafts: Mapping[str, str]
+) -> Iterator[EditedExecution]:
+    """Yield the executions among ``indices`` that the edits of a model concern.
+
+    ``manifest`` is the manifest of the run. ``drafts`` are the texts of open files by URI; the run may have used such a
+    file. Raises ``NoSuchRun``, ``ModelErrors``, ``NothingToRun`` and ``OSError``.
+    """
+    record = place.record()
+    wanted = {index: manifest.scenarios[index] for index in indices if index < len(manifest.scenarios)}
+    reason = _changed_files(record.files, place.folder, drafts)
+    if not reason and not record.models and file.digest == record.digest:
+        return
+    specs = {} if reason else _specs_now(place, manifest, file, wanted.values())
+    for index, stored in wanted.items():
+        spec = specs.get(scenario_key(stored))
+        why = reason or (GONE if spec is None else change_of(spec, stored))
+        if why or spec is None:
+            yield EditedExecution(index, stored, None, why)
+            continue
+        edited = edited_clauses(spec, stored)
+        reasons = [(clause, _refusal(clause, spec, file)) for clause in edited]
+        if reasons:
+            judged = replace(spec, clauses=tuple(clause for clause, refusal in reasons if not refusal))
+            refused = tuple((clause, refusal) for clause, refusal in reasons if refusal)
+            yield EditedExecution(index, stored, judged, refused=refused)
+
+
+def _specs_now(
+    place: StoredRun, manifest: Manifest, file: ModelFile, stored: Iterable[ScenarioSpec]
+) -> dict[str, ScenarioSpec]:
+    keys = {scenario_key(spec) for spec in stored}
+    repeat = max(spec.repetition for spec in manifest.scenarios)
+    try:
+        plan = Plan.of_files(file.name, uri_to_path(file.uri), (file,), selection_of(place, manifest, keys))
+        with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+            found = plan.prepare(Path(folder), repeat=repeat if repeat > 1 else None).scenarios
+    except SelectionError:
+        return {}
+    return {scenario_key(spec): spec for spec in found}
+
+
+def _changed_files(known: Mapping[str, str], folder: Path, drafts: Mapping[str, str]) -> str:
+    """Return the reason why a run's traces are no evidence, if a file that it used has changed, also if unsaved."""
+    found = dict.fromkeys(changed(known, folder))
+    for name, digest in known.items():
+        path = (folder / name).resolve()
+        draft = drafts.get(path_to_uri(path))
+        if draft is not None and hashlib.sha256(draft.encode("utf-8", "surrogatepass")).hexdigest() != digest:
+            found.setdefault(path)
+    if not found:
+        return ""
+    names = ", ".join(path.name for path in found)
+    return f"{names} changed since the run: {AGAIN}"
+
+
+def _refusal(clause: ClauseSpec, spec: ScenarioSpec, file: ModelFile) -> str:
+    """Return the reason why an edited clause is not judged while editing: users' code would judge it."""
+    path = uri_to_path(file.uri)
+    if path is not None and may_define(path, clause.sentence):
+        return f"a step of the project judges it: {AGAIN}"
+    policies = () if spec.execution is None else spec.execution.policies
+    if any(policy.rule.kind == "python" for policy in policies if policy.clause in (clause.parts or (clause.iri,))):
+        return f"Python code judges it: {AGAIN}"
+    return ""
