@@ -163,6 +163,7 @@ def _parser() -> argparse.ArgumentParser:
 
     imported = commands.add_parser("import", help="write a graph (.ttl, .json, .jsonld) as RobBDD text")
     imported.add_argument("path", metavar="FILE", type=Path)
+    imported.add_argument("more", metavar="FILE", type=Path, nargs="*", help=MORE)
     imported.add_argument("-o", "--output", metavar="MODEL.bdd", type=Path, required=True)
     imported.add_argument("--force", action="store_true", help="replace existing files")
     imported.set_defaults(command=_import)
@@ -297,7 +298,7 @@ def _judge(options: argparse.Namespace) -> int:
 def _import(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.import_model import import_model
 
-    return import_model(options.path, options.output, overwrite=options.force)
+    return import_model(options.path, options.output, more=options.more, overwrite=options.force)
 
 
 def _view(options: argparse.Namespace) -> int:

@@ -56,6 +56,18 @@ def test_the_graph_of_the_parts_is_that_of_the_whole(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("folder")
+def test_the_parts_are_imported_as_the_whole(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "story.jsonld", "-o", "part.bdd"]) == 2
+    assert not Path("part.bdd").exists()
+    for name, files in (("whole", ["whole.ttl"]), ("parts", list(PARTS))):
+        Path(name).mkdir()
+        assert main(["import", *files, "-o", f"{name}/m.bdd"]) == 0
+    capsys.readouterr()
+    for name in ("m.bdd", "m.scene"):
+        assert Path("parts", name).read_bytes() == Path("whole", name).read_bytes()
+
+
+@pytest.mark.usefixtures("folder")
 def test_blank_nodes_with_one_label_in_several_files_stay_apart() -> None:
     for name, thing in (("a.json", "cube"), ("b.json", "ball")):
         node = {"@id": "_:b0", "@type": "https://example.org/T", "https://example.org/of": {"@id": f"x:{thing}"}}

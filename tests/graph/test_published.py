@@ -78,6 +78,27 @@ def test_a_file_beside_the_model_takes_the_place_of_an_address_that_ends_so(plac
     assert [str(predicate) for predicate in graph.predicates()] == [f"{X}own"]
 
 
+def test_a_model_with_the_name_of_a_published_context_does_not_replace_it(tmp_path: Path) -> None:
+    address = f"{METAMODELS}acceptance-criteria/bdd/environment.json"
+    path = write(tmp_path / "environment.json", {"@id": "x:cup", "@type": "Object"}, context=(address,))
+    built = read(path)
+    assert built.faults == ()
+    assert [str(kind) for kind in built.graph.objects()] == [f"{METAMODELS}environment#Object"]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ('{"@context": {"a": 5}, "@id": "x:y"}', "@context property values must be strings or objects"),
+        ('{"@context": {"a": "a:b"}, "@id": "x:y", "a": 1}', "Cyclical context definition detected (term a)"),
+    ],
+)
+def test_an_error_in_json_ld_is_reported_with_its_cause(text: str, reason: str) -> None:
+    (fault,) = read_graph_file(Document("file:///m.json", 1, text)).faults
+    assert fault.message.endswith(reason)
+    assert fault.message.startswith("this is not a graph in the format json-ld: ")
+
+
 IMPORTS = "http://www.w3.org/2002/07/owl#imports"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,8 +23,11 @@ _FOLDER = "file:///imported/"
 _MODEL = "model.bdd"
 
 
-def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
-    """Write a model as RobBDD text to ``output``. Scenes are written to a ``.scene`` with the same name."""
+def import_model(path: Path, output: Path, *, more: Sequence[Path] = (), overwrite: bool) -> int:
+    """Write a model as RobBDD text to ``output``. Scenes are written to a ``.scene`` with the same name.
+
+    ``more`` are further graph files that belong to the model.
+    """
     from robbdd_tools.graph.rdf.records import Incomplete
     from robbdd_tools.graph.text.losses import compare
     from robbdd_tools.graph.text.model_text import write_model
@@ -34,7 +38,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     present = [file for file in (output, scene) if file.exists()]
     if present and not overwrite:
         return fail(f"{present[0]} exists already; --force replaces it")
-    model = valid_model(path)
+    model = valid_model(path, more)
     if model is None:
         return FAILED
     graph = model.graph.graph

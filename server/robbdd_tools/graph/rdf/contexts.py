@@ -92,8 +92,10 @@ class ContextLoader:
         if urlsplit(url).scheme not in ("http", "https"):
             raise UnknownContext(f"the context '{url}' is neither a file nor a web address")
         own = None if self.folder is None else file_for(url, self.folder)
-        if own is not None:
-            return _local(url, own)
+        stated = None if own is None else _local(url, own)
+        # A model with the name of a published context, such as environment.json, does not replace the context.
+        if stated is not None and not (is_published(url) and _has_nodes(stated)):
+            return stated
         if is_published(url):
             return {"@context": published_context()}
         text = _cached(url)
@@ -199,6 +201,11 @@ def _local(url: str, path: Path) -> Any:
     if isinstance(text, Unreadable):
         raise UnknownContext(f"the context cannot be read: {text.reason}")
     return _json(url, text)
+
+
+def _has_nodes(document: Any) -> bool:
+    keys = cast(Json, document).keys() if isinstance(document, dict) else ("@graph",)
+    return not {"@graph", "@id", "@type"}.isdisjoint(keys)
 
 
 def _json(url: str, text: str) -> Any:

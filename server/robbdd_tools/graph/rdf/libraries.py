@@ -46,7 +46,7 @@ def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[J
         cause = _unknown_context(error)
         if cause is not None:
             raise cause from error
-        raise ValueError(str(error).partition("\n")[0]) from error
+        raise ValueError(_reason(error)) from error
     for graph in dataset.values():
         yield from ((triple["subject"], triple["predicate"], triple["object"]) for triple in graph)
 
@@ -97,6 +97,16 @@ def _jsonld() -> Any:
     from pyld import jsonld  # pyright: ignore[reportMissingTypeStubs] -- pyld has no types
 
     return jsonld
+
+
+def _reason(error: BaseException) -> str:
+    """Return the message of the error that has caused a JSON-LD error, with the part of the document if it is known."""
+    while isinstance(cause := getattr(error, "cause", None) or error.__cause__, BaseException):
+        error = cause
+    message = str(error.args[0] if error.args else error).partition("\n")[0].rstrip(".")
+    details = getattr(error, "details", None)
+    parts = [f"{name} {value}" for name, value in json_object(details).items() if isinstance(value, str)]
+    return f"{message} ({', '.join(parts)})" if parts else message
 
 
 def _unknown_context(error: BaseException | None) -> UnknownContext | None:
