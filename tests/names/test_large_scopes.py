@@ -14,7 +14,7 @@ from robbdd_tools.checks.memo import without_cache
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names import scope
 from robbdd_tools.names.index import FileIndex
-from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.names.project import MAX_RELATED, Project, Snapshot
 from robbdd_tools.names.reachability import Reachability
 from robbdd_tools.workbench.model import load_all
 
@@ -140,3 +140,41 @@ def test_all_sources_of_a_snapshot_are_indexed() -> None:
     snapshot = snapshot_of(model(Random(3)))
     read = [source for source in snapshot.sources.values() if isinstance(source, FileIndex)]
     assert {path for source in read for path in source.names.entries} == set(snapshot.reachability.declaring)
+
+
+def circle(folder: Path, text: str, count: int) -> None:
+    """Write a cycle of imports of models with ``{n}`` and ``{following}`` in their text."""
+    for number in range(count):
+        following = (number + 1) % count
+        written = f'import "f{following}.bdd"\n' + text.format(n=number, following=following)
+        (folder / f"f{number}.bdd").write_text(written, encoding="utf-8")
+
+
+def test_errors_in_a_large_cycle_are_counted_at_each_import_and_the_first_are_listed(tmp_path: Path) -> None:
+    count = 2 * scope.MAX_SEARCHED
+    circle(tmp_path, "ns t{n} = 'https://example.org/{n}/'\nTask (ns=t{n} task-{n}\n", count)
+    broken = [finding for finding in load_all([tmp_path]).diagnostics if finding.code == "broken-import"]
+    assert len(broken) == count
+    for finding in broken:
+        assert f" has {count - 1} errors, the first: " in finding.message
+        assert len(finding.related) == MAX_RELATED
+        assert finding.place.uri not in {related.place.uri for related in finding.related}
+
+
+def test_a_name_in_every_file_of_a_cycle_is_reported_by_a_few_searches(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    count = 2 * scope.MAX_SEARCHED
+    circle(tmp_path, "ns t = 'https://example.org/t/'\nTask (ns=t) task\n", count)
+    walks = 0
+    walk = Reachability.walk
+
+    def counting(self: Reachability, uri: str) -> Iterator[str]:
+        nonlocal walks
+        walks += 1
+        return walk(self, uri)
+
+    monkeypatch.setattr(Reachability, "walk", counting)
+    found = [finding.place.uri for finding in load_all([tmp_path]).diagnostics if finding.code == "duplicate-iri"]
+    assert sorted(found) == sorted(path.as_uri() for path in tmp_path.iterdir())
+    assert walks <= 5 * count

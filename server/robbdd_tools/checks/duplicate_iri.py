@@ -43,10 +43,14 @@ def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
         return
     first: dict[str, Definition] = {}
     ordered = [other for other in scope.uris if other in others] if len(others) > 1 else others
+    repeated = tuple(_definitions(file, names))
+    wanted = {str(definition.iri) for definition in repeated}
     for other in map(snapshot.file, reversed(list(ordered))):
+        if wanted <= first.keys():
+            break
         for definition in _definitions(other, names) if other is not None else ():
             first.setdefault(str(definition.iri), definition)
-    for definition in _definitions(file, names):
+    for definition in repeated:
         other = first.setdefault(str(definition.iri), definition)
         # All members of a similar set share one declaration.
         if (other.uri, other.span) != (definition.uri, definition.span):

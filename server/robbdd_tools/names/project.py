@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
-from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached, reached_from
+from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached_from
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.reachability import Reachability, Source
 from robbdd_tools.names.scope import Scope
+
+MAX_RELATED = 20
+"""Maximum number of errors in imported files that are related places of one import."""
 
 
 @dataclass
@@ -162,7 +166,15 @@ class Snapshot:
 
     def importers(self, uri: str) -> tuple[str, ...]:
         """Return the files that import a file, directly or indirectly, in alphabetical order."""
-        return tuple(sorted(reached(self._users, uri)))
+        cycle = self.reachability.cycle(uri)
+        if cycle[0] not in self._importers:
+            self._importers[cycle[0]] = sorted(reached_from(self._users, cycle))
+        return tuple(other for other in self._importers[cycle[0]] if other != uri)
+
+    @cached_property
+    def _importers(self) -> dict[str, Sequence[str]]:
+        """The files of each cycle of imports and those that import them, by the first file of the cycle."""
+        return {}
 
     def is_imported(self, uri: str) -> bool:
         """Return whether another file imports a file."""
@@ -182,6 +194,11 @@ class Snapshot:
         """The syntax errors and unusable imports of each file."""
         files = (source for source in self.sources.values() if isinstance(source, FileIndex))
         return {index.document.uri: faults for index in files if (faults := self._faults_of(index))}
+
+    @cached_property
+    def _faults_of_cycles(self) -> dict[int, Sequence[Related]]:
+        """The faults that the files of a large cycle of imports reach; they are the same for all of them."""
+        return {}
 
     @cached_property
     def _leading_to_faults(self) -> frozenset[str]:
@@ -227,22 +244,29 @@ class Snapshot:
         for link in imports:
             if link.problem is not None:
                 continue
-            faults = [fault for fault in self._faults_behind(link.uri) if fault.uri != index.document.uri]
-            if faults:
+            own = index.document.uri
+            faults = self._faults_behind(link.uri)
+            # A file in a cycle of imports is among its own imports.
+            count = len(faults) - (len(self._faults.get(own, ())) if self.import_each_other(own, link.uri) else 0)
+            if count:
                 name = link.uri.rsplit("/", 1)[-1]
-                message = f"'{name}' has {_errors(len(faults))}, the first: {faults[0].message}"
-                found.append(
-                    Diagnostic(index.document.uri, link.span, Severity.ERROR, "broken-import", message, tuple(faults))
-                )
+                others = tuple(islice((fault for fault in faults if fault.uri != own), MAX_RELATED))
+                message = f"'{name}' has {_errors(count)}, the first: {others[0].message}"
+                found.append(Diagnostic(own, link.span, Severity.ERROR, "broken-import", message, others))
         return found
 
-    def _faults_behind(self, uri: str) -> list[Related]:
+    def _faults_behind(self, uri: str) -> Sequence[Related]:
         """Return the faults of a file and all its imports."""
         if uri not in self._leading_to_faults:
-            return []
+            return ()
         scope = self.scope(uri)
-        files = scope.uris if scope.is_small else filter(scope.reaches, self._faults)
-        return [fault for name in files for fault in self._faults.get(name, ())]
+        if scope.is_small:
+            return [fault for name in scope.uris for fault in self._faults.get(name, ())]
+        cycle = self.reachability.cycles[uri]
+        if cycle not in self._faults_of_cycles:
+            files = filter(scope.reaches, self._faults)
+            self._faults_of_cycles[cycle] = [fault for name in files for fault in self._faults[name]]
+        return self._faults_of_cycles[cycle]
 
     def _faults_of(self, index: FileIndex) -> list[Related]:
         faults = [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 from robbdd_tools.names.definition import Definition
@@ -156,7 +156,8 @@ class Scope:
         if namespace is None:
             return None
         # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
-        for other in (file, *(other for other in self.declaring(namespace) if other is not file)):
+        # Files of a large cycle are not searched if the first one has it.
+        for other in chain((file,), (other for other in self.declaring(namespace) if other is not file)):
             for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
                 if isinstance(root, Namespace):

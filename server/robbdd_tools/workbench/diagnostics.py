@@ -105,7 +105,8 @@ class Finding:
 
 def findings(snapshot: Snapshot, diagnostics: Iterable[Diagnostic]) -> tuple[Finding, ...]:
     """Return a snapshot's diagnostics with lines and columns."""
-    return tuple(_finding(Places(snapshot), diagnostic) for diagnostic in diagnostics)
+    places = Places(snapshot)
+    return tuple(_finding(places, diagnostic) for diagnostic in diagnostics)
 
 
 class Places:

@@ -19,13 +19,18 @@ def prefix_for(name: str, taken: Collection[str]) -> str:
 
 
 def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
-    """Bind the prefixes of the user and of the vocabulary to a graph. Return all of them."""
+    """Bind the prefixes of the user and of the vocabulary to a new graph. Return all of them."""
+    from rdflib import URIRef
+
     taken: dict[str, str] = {}
+    bound: set[str] = set()
     for name, namespace in [*user.items(), *PREFIXES.items()]:
-        if namespace not in taken.values():
+        if namespace not in bound:
+            bound.add(namespace)
             taken[prefix_for(name, taken)] = namespace
     for prefix, namespace in taken.items():
-        graph.bind(prefix, namespace, override=True, replace=True)
+        # Graph.bind also indexes the namespace, in time proportional to their number, which only serializers need.
+        graph.store.bind(prefix, URIRef(namespace))
     return taken
 
 

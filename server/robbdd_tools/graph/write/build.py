@@ -212,10 +212,12 @@ def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
     The prefixes of the file itself are added first. If a prefix already denotes another namespace, it gets a number.
     """
     prefixes: dict[str, str] = {}
+    added: set[URIRef] = set()
     for root in _namespaces(reached):
         namespace = sink.iri(root.iri.value)
-        if namespace is None or str(namespace) in prefixes.values():
+        if namespace is None or namespace in added:
             continue
+        added.add(namespace)
         prefix = prefix_for(root.name.text, prefixes)
         prefixes[prefix] = str(namespace)
         sink.add(namespace, "rbw:prefix", sink.literal(prefix))

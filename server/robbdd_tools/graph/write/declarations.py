@@ -97,9 +97,7 @@ class Uses:
         if entry.uri not in self._errors:
             faults = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
             self._errors[entry.uri] = sorted(fault.span.start for fault in faults)
-        starts, span = self._errors[entry.uri], entry.placed.span
-        first = bisect_left(starts, span.start)
-        return first < len(starts) and starts[first] < span.end
+        return _covers_one(entry, self._errors[entry.uri])
 
 
 def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
@@ -127,8 +125,10 @@ def unreliable_declarations(
     declaration is incomplete, and so is a set, composition or scene with an error. An error inside a template or a
     story does not make its users unreliable.
     """
-    places = tuple(left_out)
-    suspect = [entry for entry in reached if uses.has_error(entry) or any(map(entry.covers, places))]
+    starts: dict[str, list[int]] = {}
+    for place in sorted(left_out, key=lambda location: location.span.start):
+        starts.setdefault(place.uri, []).append(place.span.start)
+    suspect = [entry for entry in reached if uses.has_error(entry) or _covers_one(entry, starts.get(entry.uri, ()))]
     spreading = [entry for entry in suspect if not isinstance(entry.tree, tree.Template | tree.Story)]
     users: dict[Key, list[Reached]] = {}
     for entry in reached if spreading else ():
@@ -141,7 +141,15 @@ def unreliable_declarations(
             if user.key not in reaching:
                 reaching.add(user.key)
                 spreading.append(user)
-    return tuple(entry for entry in reached if entry.key in found | reaching)
+    found |= reaching
+    return tuple(entry for entry in reached if entry.key in found)
+
+
+def _covers_one(entry: Reached, starts: Sequence[int]) -> bool:
+    """Return whether one of some sorted offsets in its file is in a declaration."""
+    span = entry.placed.span
+    first = bisect_left(starts, span.start)
+    return first < len(starts) and starts[first] < span.end
 
 
 @kept_with_key
