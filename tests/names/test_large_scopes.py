@@ -71,6 +71,24 @@ def test_a_large_scope_means_what_a_small_one_means(monkeypatch: pytest.MonkeyPa
     assert findings(files) == searched
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_edits_in_large_scopes_leave_the_findings_of_a_fresh_project(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(scope, "MAX_SEARCHED", 1)
+    random, project = Random(seed), Project()
+    files = model(random)
+    for uri, text in files.items():
+        project.open(uri, 1, text)
+    for version, uri in enumerate(random.sample(list(files), 5), start=2):
+        other = model(random)[uri]
+        files[uri] = other if random.random() < 0.5 else files[uri] + other.partition("\nns ")[2].partition("\n")[2]
+        project.open(uri, version, files[uri])
+        snapshot = project.snapshot()
+        edited = [comparable(entry) for each in files for entry in fast_diagnostics(snapshot, each)]
+        assert edited == findings(files)
+
+
 def test_the_nearest_declaration_of_a_large_scope_is_meant() -> None:
     count = scope.MAX_SEARCHED + 10
     files = {f"{FOLDER}f{n}.scene": f'import "f{(n + 1) % count}.scene"\n' for n in range(count)}
@@ -178,3 +196,35 @@ def test_a_name_in_every_file_of_a_cycle_is_reported_by_a_few_searches(
     found = [finding.place.uri for finding in load_all([tmp_path]).diagnostics if finding.code == "duplicate-iri"]
     assert sorted(found) == sorted(path.as_uri() for path in tmp_path.iterdir())
     assert walks <= 5 * count
+
+
+def test_an_edit_in_a_large_cycle_is_compared_once_for_all_its_files(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    count = 2 * scope.MAX_SEARCHED
+    circle(tmp_path, "ns t{n} = 'https://example.org/{n}/'\nTask (ns=t{n}) task-{n}\n", count)
+    project, uris = Project(), [(tmp_path / f"f{number}.bdd").as_uri() for number in range(count)]
+    text = (tmp_path / "f0.bdd").read_text(encoding="utf-8")
+    project.open(uris[0], 1, text)
+    snapshot = project.snapshot()
+    before = [snapshot.file(uri) for uri in uris]
+    walked = 0
+    walk = Reachability.walk
+
+    def counting(self: Reachability, uri: str) -> Iterator[str]:
+        nonlocal walked
+        for found in walk(self, uri):
+            walked += 1
+            yield found
+
+    monkeypatch.setattr(Reachability, "walk", counting)
+    project.open(uris[0], 2, text.replace("task-0", "job"))
+    snapshot = project.snapshot()
+    after = [snapshot.file(uri) for uri in uris]
+    assert after[0] is not None
+    assert "job" in after[0].definitions
+    assert all(old is not new for old, new in zip(before, after, strict=True))
+    assert walked <= 10 * count
+    project.open(f"{FOLDER}other.bdd", 1, "")
+    snapshot = project.snapshot()
+    assert [snapshot.file(uri) for uri in uris] == after

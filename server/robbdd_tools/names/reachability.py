@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from weakref import WeakKeyDictionary
 
 from robbdd_tools.base.files import Unreadable
 from robbdd_tools.names.imports import components
 from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.indirect_names import targets_in
+from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.syntax.declaration import SymbolKind
 
 Source = FileIndex | Unreadable
@@ -66,6 +68,39 @@ class Reachability:
             return one == other
         return bool(self._reached[self.cycles[one]] >> self._bits[self.cycles[other]] & 1)
 
+    def reaches_same(self, uri: str, other: Reachability) -> bool:
+        """Return whether a file reaches exactly the same revisions of the same files in another snapshot.
+
+        The comparison is made once for all files that import each other.
+        """
+        first, known = self.cycle(uri)[0], self._compared.setdefault(other, {})
+        if first not in known:
+            known[first] = self._read(first) == other._read(first)
+        return known[first]
+
+    @cached_property
+    def _compared(self) -> WeakKeyDictionary[Reachability, dict[str, bool]]:
+        return WeakKeyDictionary()
+
+    def changed_names(self, uri: str, before: Reachability) -> frozenset[str] | None:
+        """Return the names that a file reaches and that differ in an earlier snapshot; ``None`` if imports differ.
+
+        They are found once for all files that import each other.
+        """
+        first, known = self.cycle(uri)[0], self._changed.setdefault(before, {})
+        if first not in known:
+            known[first] = _changed_names(before._read(first), self._read(first))
+        return known[first]
+
+    @cached_property
+    def _changed(self) -> WeakKeyDictionary[Reachability, dict[str, frozenset[str] | None]]:
+        return WeakKeyDictionary()
+
+    def _read(self, uri: str) -> dict[str, FileIndex | None]:
+        """Return the files that a file reaches, ``None`` for those that cannot be read."""
+        found = ((other, self.sources.get(other)) for other in self.walk(uri))
+        return {other: source if isinstance(source, FileIndex) else None for other, source in found}
+
     def walk(self, uri: str) -> Iterator[str]:
         """Yield a file and those that it imports, directly or not, breadth first."""
         waiting, seen = [uri], {uri}
@@ -115,3 +150,19 @@ class Reachability:
 
 def _imports(source: Source | None) -> list[str]:
     return [link.uri for link in source.imports] if isinstance(source, FileIndex) else []
+
+
+def _changed_names(
+    before: Mapping[str, FileIndex | None], after: Mapping[str, FileIndex | None]
+) -> frozenset[str] | None:
+    changed: set[str] = set()
+    if before.keys() != after.keys():
+        return None
+    for uri, new in after.items():
+        old = before[uri]
+        if old is new:
+            continue
+        if old is None or new is None or _imports(old) != _imports(new):
+            return None
+        changed |= changed_paths(old.names, new.names)
+    return frozenset(changed)

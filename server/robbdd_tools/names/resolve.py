@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.indirect_names import ELEMENT_ROLES, ROLES, paths_through
-from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.move import moved_ref, moved_reference
@@ -163,11 +162,9 @@ def _put_together(
 
 
 def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ...]) -> dict[Declaration, Resolution]:
-    if before is None or not known or before.uris != scope.uris:
+    changed = None if before is None or not known else scope.changed_names(before)
+    if changed is None:
         return {}
-    changed: set[str] = set()
-    for old, new in zip(before.tables, scope.tables, strict=True):
-        changed |= changed_paths(old, new)
     every = (part for entry in known for part in entry.parts or (entry,))
     return {
         entry.declaration: entry for entry in every if not entry.through_others and changed.isdisjoint(entry.looked_up)

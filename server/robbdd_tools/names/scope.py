@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import cached_property
 from itertools import chain, islice
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.indirect_names import instance_parts, targets_in
+from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.names.namespaces import namespace_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -37,7 +38,12 @@ class Scope:
         """Return whether two scopes have the same files in the same order."""
         if self is other or not isinstance(other, Scope):
             return self is other
-        return self.own is other.own and self.files == other.files and self.unread == other.unread
+        if self.own is not other.own:
+            return False
+        if self.is_small or other.is_small:
+            return self.files == other.files and self.unread == other.unread
+        # The files themselves determine the order in which they are found.
+        return self._reachability.reaches_same(self.own.document.uri, other._reachability)
 
     def walk(self) -> Iterator[FileIndex]:
         """Yield the files, nearest first. Files are searched only as far as the caller iterates."""
@@ -81,6 +87,15 @@ class Scope:
     def tables(self) -> tuple[NameTable, ...]:
         """The name tables of the files. They stay identical as long as no name is added, removed or reordered."""
         return tuple(file.names for file in self.files)
+
+    def changed_names(self, before: Scope) -> Set[str] | None:
+        """Return the qualified names that differ from an earlier scope; ``None`` if the files or their order differ."""
+        if not (self.is_small or before.is_small):
+            return self._reachability.changed_names(self.own.document.uri, before._reachability)
+        if before.uris != self.uris:
+            return None
+        pairs = zip(before.files, self.files, strict=True)
+        return {path for old, new in pairs for path in changed_paths(old.names, new.names)}
 
     def file(self, uri: str) -> FileIndex:
         """Return a file of the scope."""
