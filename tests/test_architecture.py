@@ -21,6 +21,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"catalog"}),
     frozenset({"protocol"}),
     frozenset({"traces"}),
+    frozenset({"logs"}),
     frozenset({"syntax"}),
     frozenset({"names"}),
     frozenset({"graph"}),
@@ -30,7 +31,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"lsp", "cli", "commands", "pytest_plugin"}),
     frozenset({"start"}),
 )
-EVIDENCE = {"base", "catalog.api", "monitor", "catalog", "protocol", "traces"}
+EVIDENCE = {"base", "catalog.api", "monitor", "catalog", "protocol", "traces", "logs"}
 BRANCH: dict[str, set[str]] = {
     "user_code": EVIDENCE,
     "judging": {*EVIDENCE, "user_code"},
@@ -49,7 +50,8 @@ HOMES = {
     "jinja2": {"gherkin"},
     "behave": {"agent"},
     "mujoco": {"world"},
-    "mcap": {"traces"},
+    "mcap": {"traces", "logs"},
+    "rosbags": {"logs"},
     "sqlite3": {"run"},
     "py_trees": {"agent"},
     "pygls": {"lsp"},

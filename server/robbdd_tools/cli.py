@@ -20,6 +20,7 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
+from robbdd_tools.commands.log_arguments import allow_log, judge_options
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run_arguments import (
@@ -143,15 +144,24 @@ def _parser() -> argparse.ArgumentParser:
     allow_store(replay)
     replay.set_defaults(command=_replay)
 
-    judge = commands.add_parser(
-        "judge", help="judge the traces of a stored run against an edited model, without simulating"
-    )
-    judge.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
+    judge = commands.add_parser("judge", help="judge a stored run, or the log of a real robot, without simulating")
+    text = "number of a stored run, latest, a run's folder; or a log: a ROS bag, an MCAP file, a CSV table"
+    judge.add_argument("run", metavar="RUN|LOG", help=text)
     judge.add_argument("path", metavar="FILE|DIR", type=Path)
     judge.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*", help="as for run")
     judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
+    allow_log(judge)
     allow_store(judge)
     judge.set_defaults(command=_judge)
+
+    export = commands.add_parser("export", help="write the traces of a stored run as bags of ROS 2")
+    export.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
+    export.add_argument("--ros2", action="store_true", required=True, help="as a rosbag2: transforms, joints, events")
+    export.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="a new folder")
+    export.add_argument("--mcap", action="store_true", help="store messages as MCAP instead of SQLite")
+    export.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
+    allow_store(export)
+    export.set_defaults(command=_export)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
@@ -185,7 +195,7 @@ def _parser() -> argparse.ArgumentParser:
     doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
     doctor.add_argument("--json", action="store_true", help="print one JSON object")
     doctor.set_defaults(command=_doctor)
-    _allow_refusal(run, replay, judge, view)
+    _allow_refusal(run, replay, judge, export, view)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -289,10 +299,17 @@ def _replay(options: argparse.Namespace) -> int:
 
 
 def _judge(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.judge import JudgeOptions, judge
+    from robbdd_tools.commands.judge import judge
 
     with output_may_be_lost():
-        return judge(JudgeOptions(options.run, (options.path, *options.more), options.store, options.json))
+        return judge(judge_options(options))
+
+
+def _export(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.export_run import ExportOptions, export_run
+
+    chosen = options.scenario or ()
+    return export_run(ExportOptions(options.run, options.output, chosen, options.store, options.mcap))
 
 
 def _import(options: argparse.Namespace) -> int:

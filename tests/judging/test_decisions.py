@@ -10,10 +10,10 @@ import pytest
 from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.decisions import alternatives, decide, is_closed
-from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.verdict import Cause, Outcome, unknown
 from robbdd_tools.protocol.clauses import Fluent
 from robbdd_tools.user_code.calls import UserCodeError

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -144,3 +145,46 @@ def test_at_some_time_is_unknown_while_a_part_of_the_window_may_still_hold(value
 def test_at_some_time_holds_whatever_is_not_known_if_it_held_once(values: list[float]) -> None:
     found = at_some_time(values, 0.3)
     assert (found.outcome, found.robustness) == (Outcome.HOLDS, 0.1)
+
+
+def in_log(values: list[float]) -> Verdict:
+    """Judge heights (m) of a log, every 0.1 s, from start to end; NaN where nothing was observed."""
+    trace = trace_of({"ball": heights(values)}, {"start": 0.0, "end": (len(values) - 1) * 0.1})
+    return judge(ABOVE, {"thing": "ball"}, ALL, replace(trace, log="drive.mcap"), {})
+
+
+def test_a_gap_in_a_log_is_unknown_and_named() -> None:
+    gap = float("nan")
+    assert in_log([1.0, 1.0]).outcome is Outcome.HOLDS
+    assert in_log([1.0, gap, gap, 1.0]) == unknown("ball was not observed between 0.00 s and 0.30 s", Cause.UNOBSERVED)
+    assert in_log([1.0, 1.0, gap]) == unknown("ball was not observed after 0.10 s", Cause.UNOBSERVED)
+    assert in_log([gap, 1.0]) == unknown("ball was not observed before 0.10 s", Cause.UNOBSERVED)
+    assert in_log([gap]) == unknown("ball was not observed at any time", Cause.UNOBSERVED)
+
+
+def test_a_comparison_with_a_missing_value_passes_nothing() -> None:
+    def stays_low(evidence: Evidence, _: Arguments) -> FloatArray:
+        low = ~(evidence.position("ball")[:, 2] > 0.5)
+        return low * 2.0 - 1.0
+
+    trace = replace(trace_of({"ball": heights([0.1, float("nan")])}, {"start": 0.0, "end": 0.1}), log="drive.mcap")
+    found = judge(replace(ABOVE, evaluate=stays_low), {"thing": "ball"}, ALL, trace, {})
+    assert found.outcome is Outcome.UNKNOWN
+
+
+@pytest.mark.parametrize("question", ["orientation", "velocity", "position_at", "orientation_at", "gripped"])
+def test_every_question_about_a_gap_is_refused(question: str) -> None:
+    trace = trace_of({"ball": heights([0.1, float("nan"), 0.1])}, {"start": 0.0, "end": 0.2})
+    turns = np.where(np.isnan(trace.positions[:, :, 2:]), np.nan, trace.orientations)
+    grips = {"arm": np.array([[1.0], [np.nan], [1.0]])}
+    trace = replace(trace, log="drive.mcap", orientations=turns, grips=grips)
+
+    def asked(evidence: Evidence, _: Arguments) -> FloatArray:
+        if question == "gripped":
+            return evidence.gripped("arm", "ball")
+        more = (evidence.times,) if question.endswith("_at") else ()
+        values: FloatArray = getattr(evidence, question)("ball", *more)
+        return np.nan_to_num(values[:, 0]) + 1.0
+
+    found = judge(replace(ABOVE, evaluate=asked), {"thing": "ball"}, ALL, trace, {})
+    assert (found.outcome, found.cause) == (Outcome.UNKNOWN, Cause.UNOBSERVED)

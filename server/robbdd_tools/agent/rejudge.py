@@ -19,12 +19,12 @@ from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
-from robbdd_tools.judging.decisions import decide
+from robbdd_tools.judging.decisions import decide, occurred
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.contact import Contact
-from robbdd_tools.monitor.time import TOLERANCE, After, Before, TimeConstraint, never_occurred, occurrences
+from robbdd_tools.monitor.time import TOLERANCE, After, Before, TimeConstraint, occurrences
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import EventOccurrence, fluents_of
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
@@ -155,7 +155,7 @@ def decided_on_trace(
     trace, statement = evidence.trace, statement_of(clause)
     if isinstance(statement, EventOccurrence):
         event, iteration = statement.event, iteration_of(clause)
-        return _unrecorded(event, spec, recorded) or _occurred(trace, event, iteration)
+        return _unrecorded(event, spec, recorded) or occurred(trace, event, iteration)
     read = clause_of(clause, spec)
     for fluent in fluents_of(read):
         for event, iteration in occurrences(fluent.time):
@@ -193,15 +193,6 @@ def _unrecorded(event: str, spec: ScenarioSpec, recorded: Mapping[str, str]) -> 
     if event in spec.events and spec.events[event] != recorded.get(event):
         return unknown(f"the stored trace has no record of event {event}: {AGAIN}", Cause.NO_RECORD)
     return None
-
-
-def _occurred(trace: Trace, event: str, iteration: int) -> Verdict:
-    time = trace.event_time(event, iteration)
-    if time is not None:
-        return Verdict(Outcome.HOLDS, at=time)
-    if trace.unreached:
-        return unknown(trace.unreached, Cause.UNREACHED)
-    return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
 
 
 def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:

@@ -14,13 +14,12 @@ from robbdd_tools.agent.feature_wording import feature_wording, remarks_on_wordi
 from robbdd_tools.agent.printed_output import finish_output
 from robbdd_tools.agent.shared_executions import SharedExecutions, call_of, calls_of, timing_of
 from robbdd_tools.agent.violation_states import ViolationStates
-from robbdd_tools.judging.decisions import decide, is_closed, no_step
+from robbdd_tools.judging.decisions import decide, is_closed, no_step, occurred
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.judging.scenario_clauses import iteration_of, judged_clause, stated_by_step
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
-from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
 from robbdd_tools.protocol.fault_places import sources_in
@@ -178,12 +177,7 @@ class ScenarioRun:
             if event not in self._spec.events:
                 return unknown(f"nothing in the scenario emits event {event}", Cause.NO_EMITTER)
             trace = execution.advance_until(lambda trace: trace.event_time(event, iteration) is not None)
-            time = trace.event_time(event, iteration)
-            if trace.unreached:
-                return unknown(trace.unreached, Cause.UNREACHED)
-            if time is None:
-                return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
-            return Verdict(Outcome.HOLDS, at=time)
+            return occurred(trace, event, iteration)
 
         return self._judged(line, text, verdict)
 

@@ -140,6 +140,11 @@ class Evidence(Protocol):
         """Return the value of a configuration of an element, as set up in the world."""
         ...
 
+    @property
+    def is_logged(self) -> bool:
+        """Whether the samples are observations of a log. Otherwise they are the true states of a simulation."""
+        ...
+
 
 Arguments = Mapping[str, str | tuple[str, ...]]
 """Slot name → name of the element (or names of the set's elements) that fills it."""

@@ -40,15 +40,17 @@ def follow_run(run: Run) -> int:
     return _follow(run, None, watching)
 
 
-def follow(work: Followed, total: int | None = None) -> int:
-    """Show the progress of a replay or a judgement of ``total`` scenarios. Raises ``OSError``.
+def follow(work: Followed, total: int | None = None, made: str = "simulated in") -> int:
+    """Show the progress of a replay or a judgement of ``total`` scenarios; ``made`` as in ``Display``. Raises ``OSError``.
 
     Returns the number of the signal that ended it, or 0.
     """
-    return _follow(work, total, None)
+    return _follow(work, total, None, made)
 
 
-def _follow(work: Followed, total: int | None, watching: Callable[[Display], None] | None) -> int:
+def _follow(
+    work: Followed, total: int | None, watching: Callable[[Display], None] | None, made: str = "simulated in"
+) -> int:
     ended_by = 0
 
     def cancel(number: int) -> None:
@@ -56,7 +58,7 @@ def _follow(work: Followed, total: int | None, watching: Callable[[Display], Non
         ended_by = number
         work.cancel(INTERRUPTED)
 
-    with Display(work.progress, total) as display:
+    with Display(work.progress, total, made) as display:
         if watching is not None:
             watching(display)
         with end_requests(cancel):

@@ -1,43 +1,59 @@
-"""``robbdd judge``: judge the traces of a stored run by the clauses of an edited model, without simulating."""
+"""``robbdd judge``: judge a stored run or the log of a real robot by the clauses of a model, without simulating."""
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.execute import follow
+from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.commands.runs import print_unfinished
+from robbdd_tools.logs.open_log import is_log
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.judging import Judgement
+from robbdd_tools.workbench.log_judging import LogJudgement, LogNames
 from robbdd_tools.workbench.model import load_all
+from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.stored import store_at
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.results import RunResults
 
 
 @dataclass(frozen=True, slots=True)
 class JudgeOptions:
     """The options of ``robbdd judge``.
 
-    - ``run``: the stored run, given as a number, as ``latest`` or as a folder.
+    - ``run``: the stored run, given as a number, as ``latest`` or as a folder; or the path of a log.
     - ``paths``: the edited models.
     - ``store``: the store of runs.
     - ``report``: the output file.
+    - ``selection``: selects the scenario that a log is of.
+    - ``names``: how the names and times of a log are read.
+    - ``keep``: false if the judgement of a log is not stored.
     """
 
     run: str
     paths: Sequence[Path]
     store: Path | None = None
     report: Path | None = None
+    selection: Selection = field(default_factory=Selection)
+    names: LogNames = field(default_factory=LogNames)
+    keep: bool = True
 
 
 def judge(options: JudgeOptions) -> int:
-    """Judge stored traces by a model's clauses and print the verdicts. Return the exit code as ``robbdd run`` does."""
-    return report_problems(Outputs(report=options.report), viewer=False, work=lambda: _judge(options))
+    """Judge by a model's clauses and print the verdicts. Return the exit code as ``robbdd run`` does."""
+    work = _judge_log if is_log(Path(options.run)) else _judge
+    return report_problems(Outputs(report=options.report), viewer=False, work=lambda: work(options))
 
 
 def _judge(options: JudgeOptions) -> int:
@@ -49,7 +65,25 @@ def _judge(options: JudgeOptions) -> int:
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         judgement = Judgement(place, model, Path(folder))
         ended_by = follow(judgement)
-    results = judgement.progress
+    return _concluded(judgement.progress, options, ended_by)
+
+
+def _judge_log(options: JudgeOptions) -> int:
+    plan = Plan.of(load_all(options.paths), options.selection)
+    keeping = Keeping(store=options.store, keep=options.keep)
+    with LogJudgement(plan, Path(options.run), options.names, keeping) as judgement:
+        ended_by = follow(judgement, made="recorded, judged in")
+        for remark in judgement.remarks:
+            print_note(remark)
+        if judgement.place.kept:
+            print_note(f"kept as run {judgement.place.number}")
+    if judgement.problem:
+        return fail(judgement.problem)
+    return _concluded(judgement.progress, options, ended_by)
+
+
+def _concluded(results: RunResults, options: JudgeOptions, ended_by: int) -> int:
+    """Write the report and return the exit code."""
     if options.report is not None:
         replace_file(options.report, printable_json(results.as_json(), indent=1) + "\n")
     if ended_by:

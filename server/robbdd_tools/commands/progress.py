@@ -58,11 +58,13 @@ class Display:
     """Prints the messages of a run.
 
     If the cursor of the terminal can be moved, a progress bar is shown and lines are wrapped between words. Any other
-    output gets plain lines without wrapping, so that other programs can read them.
+    output gets plain lines without wrapping, so that other programs can read them. ``made`` says how the time of the
+    executions relates to the time that the work took.
     """
 
-    def __init__(self, results: RunResults, total: int | None = None) -> None:
+    def __init__(self, results: RunResults, total: int | None = None, made: str = "simulated in") -> None:
         self._results = results
+        self._made = made
         self._total = len(results.scenarios) if total is None else total
         self._console = terminal()
         self._drawn = self._console.is_terminal and not self._console.is_dumb_terminal
@@ -172,7 +174,7 @@ class Display:
         again = f"; {_counted(resampled, 'initial place')} drawn again" if resampled else ""
         self._console.print(
             f"{_counted(self._total, 'scenario')}: {', '.join(counts)}"
-            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s{shared}{again})"
+            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s {self._made} {wall:.1f} s{shared}{again})"
         )
 
     def _counts(self) -> Text:

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.settings import SettingError
-from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.monitor.judge import judge, margin_range
-from robbdd_tools.monitor.time import NoWindow, occurrences, window
+from robbdd_tools.monitor.time import NoWindow, never_occurred, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
-from robbdd_tools.monitor.verdict import Cause, Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, conjunction, disjunction, negation, unknown
 from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, Junction, Text, fluents_of
 from robbdd_tools.protocol.time_words import AMBIGUOUS
 from robbdd_tools.user_code.calls import UserCodeError, fault_of
@@ -59,6 +58,16 @@ def no_step(words: str) -> str:
     seconds = found["horizon"]
     meant = f"write 'for {seconds} seconds', or 'at some time within {seconds} seconds'"
     return f"{NO_STEP} for '{words}': {meant}"
+
+
+def occurred(trace: Trace, event: str, iteration: int) -> Verdict:
+    """Judge a When clause that waits for an event. ``iteration`` selects the occurrence, as in ``Trace.event_time``."""
+    time = trace.event_time(event, iteration)
+    if trace.unreached:
+        return unknown(trace.unreached, Cause.UNREACHED)
+    if time is None:
+        return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
+    return Verdict(Outcome.HOLDS, at=time)
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
@@ -146,7 +155,7 @@ def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) 
         condition = fluent.condition.predicate, instance.condition
     try:
         return judge(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
-    except (Unobserved, SettingError) as error:
+    except SettingError as error:
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:
         return unknown(str(error), Cause.USER_CODE, fault=error.fault)

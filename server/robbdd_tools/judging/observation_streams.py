@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.geometry import out_of_frame
+from robbdd_tools.monitor.unobserved import Unobserved
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Evidence, FloatArray
@@ -16,22 +17,22 @@ if TYPE_CHECKING:
 SOURCES = {"topic": "a ROS topic", "entity-state": "ROS entity states", "transforms": "ROS transforms"}
 
 
-class Unobserved(Exception):
-    """There is no observation on which to judge. The message gives the reason."""
-
-
 class Stream:
     """The observations of one element that are known at each sample of a window.
 
     The provider observes at the times k / rate. An observation is known after the latency. Each axis has noise that
     depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known positions, and ``stamps``
-    (n,) s are the times at which they were observed. Raises ``Unobserved`` if the simulation has no such provider, or
-    if no observation is known yet.
+    (n,) s are the times at which they were observed. The samples of a log are observations already: they are used as
+    they are. Raises ``Unobserved`` if the simulation has no such provider, or if no observation is known yet.
     """
 
     def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:
         self.target = target
         provider = observation.provider
+        if evidence.is_logged:
+            self.stamps: FloatArray = evidence.times
+            self.positions: FloatArray = _truth(evidence, target, evidence.times)
+            return
         if provider.kind != "ground-truth":
             where = SOURCES.get(provider.kind, provider.kind) + (f" '{provider.source}'" if provider.source else "")
             raise Unobserved(f"{target} is observed by {where}, which a simulation does not have")
@@ -42,9 +43,9 @@ class Stream:
         if looks.min(initial=0) < 0:
             first = float(evidence.times[int(np.argmin(looks))])
             raise Unobserved(f"nothing was known of {target} at {first:.2f} s: it is seen {provider.latency:g} s later")
-        self.stamps: FloatArray = looks / rate
+        self.stamps = looks / rate
         noise = _noise(seed, f"{observation.iri} {target}", int(looks.max(initial=0)) + 1) * provider.noise
-        self.positions: FloatArray = _truth(evidence, target, self.stamps) + noise[looks]
+        self.positions = _truth(evidence, target, self.stamps) + noise[looks]
 
 
 def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.api import Predicate
-from robbdd_tools.judging.observation_streams import Stream, Unobserved
+from robbdd_tools.judging.observation_streams import Stream
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
+from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.protocol.clauses import Fluent, Junction
 from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, closing_time, window
+from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, NEVER_APPLIED, Cause, Outcome, Verdict, unknown
 
@@ -43,12 +44,18 @@ class WindowEvidence:
         return self.trace.times[self._rows]
 
     def position(self, name: str) -> FloatArray:
-        """Return the positions of an element, m, world frame, shape (n, 3). Raises ``KeyError``."""
-        return self.trace.positions[self._rows, self.trace.column(name)]
+        """Return the positions of an element, m, world frame, shape (n, 3).
+
+        Raises ``KeyError``, and ``Unobserved`` if the element was not observed throughout the window.
+        """
+        return self._observed(name, self.trace.positions[self._rows, self.trace.column(name)], self.times)
 
     def orientation(self, name: str) -> FloatArray:
-        """Return the orientations of an element as unit quaternions (w, x, y, z), shape (n, 4). Raises ``KeyError``."""
-        return self.trace.orientations[self._rows, self.trace.column(name)]
+        """Return the orientations of an element as unit quaternions (w, x, y, z), shape (n, 4).
+
+        Raises ``KeyError`` and ``Unobserved``, like ``position``.
+        """
+        return self._observed(name, self.trace.orientations[self._rows, self.trace.column(name)], self.times)
 
     def velocity(self, name: str) -> FloatArray:
         """Return the mean velocity of an element since the previous sample, m/s, shape (n, 3). Raises ``KeyError``.
@@ -59,21 +66,41 @@ class WindowEvidence:
         if len(times) < 2:
             return np.full((1, 3), np.nan)
         steps = np.diff(path, axis=0) / np.diff(times)[:, None]
-        return np.concatenate([steps[:1], steps])[self._rows]
+        return self._observed(name, np.concatenate([steps[:1], steps])[self._rows], self.times)
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
         """Return the positions at the last sample at or before each of ``times``, m, shape (n, 3).
 
-        Raises ``KeyError``.
+        Raises ``KeyError`` and ``Unobserved``.
         """
-        return self.trace.positions[self._rows_at(times), self.trace.column(name)]
+        return self._observed(name, self.trace.positions[self._rows_at(times), self.trace.column(name)], times)
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
         """Return the orientations at the last sample at or before each of ``times``, shape (n, 4).
 
-        Raises ``KeyError``.
+        Raises ``KeyError`` and ``Unobserved``.
         """
-        return self.trace.orientations[self._rows_at(times), self.trace.column(name)]
+        return self._observed(name, self.trace.orientations[self._rows_at(times), self.trace.column(name)], times)
+
+    def _observed(self, name: str, values: FloatArray, times: FloatArray) -> FloatArray:
+        """Return the values (n, k) of an element at some times (n,). Raises ``Unobserved`` if a value is missing.
+
+        Only the trace of a log can lack values. A comparison with a missing value would be false without a word.
+        """
+        missing = np.isnan(values).any(axis=1) if self.trace.log else np.zeros(len(values), bool)
+        if missing.any():
+            raise Unobserved(f"{name} was not observed {self._gap(name, float(times[int(np.argmax(missing))]))}")
+        return values
+
+    def _gap(self, name: str, time: float) -> str:
+        """Return the gap in the observations of an element that contains a time (s), in words."""
+        known = self.trace.times[~np.isnan(self.trace.positions[:, self.trace.column(name)]).any(axis=1)]
+        before, after = known[known < time], known[known > time]
+        if before.size and after.size:
+            return f"between {before[-1]:.2f} s and {after[0]:.2f} s"
+        if before.size:
+            return f"after {before[-1]:.2f} s"
+        return f"before {after[0]:.2f} s" if after.size else "at any time"
 
     def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:
         return np.maximum(np.searchsorted(self.trace.times, times + TOLERANCE, side="right") - 1, 0)
@@ -109,8 +136,15 @@ class WindowEvidence:
         return tuple(self.regions_of)
 
     def gripped(self, agent: str, name: str) -> FloatArray:
-        """Return 1.0 at each sample where ``agent`` grips ``name``, else 0.0, shape (n,). Raises ``KeyError``."""
-        return self.trace.grips[agent][self._rows, self.trace.column(name)]
+        """Return 1.0 at each sample where ``agent`` grips ``name``, else 0.0, shape (n,).
+
+        Raises ``KeyError``, and ``Unobserved`` if it was not observed throughout the window.
+        """
+        grips = self.trace.grips[agent][self._rows, self.trace.column(name)]
+        missing = np.isnan(grips)
+        if missing.any():
+            raise Unobserved(f"it was not observed what {agent} held at {self.times[int(np.argmax(missing))]:.2f} s")
+        return grips
 
     def reach(self, agent: str, name: str) -> FloatArray:
         """Return the reach margins, rad, shape (n,), with NaN where none was sampled. Raises ``KeyError``."""
@@ -119,6 +153,11 @@ class WindowEvidence:
     def setting(self, target: str, name: str) -> str:
         """Return the value of a configuration as it was read from the simulated world. Raises ``KeyError``."""
         return self._of_pair(self.trace.settings, target, name)
+
+    @property
+    def is_logged(self) -> bool:
+        """Whether the samples are observations of a log."""
+        return bool(self.trace.log)
 
     @staticmethod
     def _of_pair(record: Mapping[tuple[str, str], T], first: str, second: str) -> T:
@@ -162,6 +201,8 @@ def judge(
         unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
+    except Unobserved as gap:
+        return unknown(str(gap), Cause.UNOBSERVED)
     if applies is not None:
         return _verdict_whenever(margins, applies, evidence.times, unit)
     if constraint.some_time:
@@ -189,7 +230,7 @@ def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regio
         return None
     try:
         margins = predicate.evaluate(WindowEvidence(trace, Window(0, len(trace.times) - 1), regions), arguments)
-    except KeyError:
+    except (KeyError, Unobserved):
         return None
     finite = margins[np.isfinite(margins)]
     return (float(finite.min()), float(finite.max())) if finite.size > 1 else None

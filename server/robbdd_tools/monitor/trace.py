@@ -64,6 +64,8 @@ class Trace:
     - ``contents``: maps a workspace to the workspaces inside it, at any depth.
     - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
     - ``pending``: the events that could occur again if the execution continued.
+    - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
+      values, which are NaN.
     """
 
     names: tuple[str, ...]
@@ -86,6 +88,7 @@ class Trace:
     immovable: tuple[str, ...] = ()
     executions: Mapping[str, int] = field(default_factory=dict[str, int])
     pending: tuple[str, ...] = ()
+    log: str = ""
 
     @property
     def end(self) -> float:

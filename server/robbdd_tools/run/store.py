@@ -62,6 +62,7 @@ class RunRecord:
     - ``user_seed``: the seed given by the user. If it is ``None``, the executions of the model have their own seeds.
     - ``models``: the paths of the models relative to the run folder, unless all of them are in the file ``path``. In
       this case, ``path`` is their common folder.
+    - ``log``: the absolute path of the log that was judged; empty for a simulated run.
     """
 
     path: str
@@ -73,6 +74,7 @@ class RunRecord:
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     user_seed: int | None = None
     models: Sequence[str] = ()
+    log: str = ""
 
 
 @dataclass(frozen=True, slots=True)

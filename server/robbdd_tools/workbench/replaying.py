@@ -103,6 +103,8 @@ class Replay:
         self, place: StoredRun, folder: Path, policy: Policy, names: Collection[str] = (), *, force: bool = False
     ) -> None:
         """Prepare a replay. Raises ``CannotReplay``, ``UserCodeRefused``, ``NoSuchRun`` and ``OSError``."""
+        if place.record().log:
+            raise CannotReplay(f"{place.record().log} is a log: nothing of it can be simulated again")
         reason = "" if force else refusal(place, model_now(place))
         if reason:
             raise CannotReplay(reason)

@@ -240,10 +240,12 @@ def begin_recording(
     seed: int | None = None,
     repeat: int | None = None,
     models: Sequence[Path] = (),
+    log: Path | None = None,
 ) -> Recording:
     """Write everything that agents need into a run folder, and record the beginning of the run in its database.
 
-    ``models`` are the model files, unless they are all models in the plan's folder. Raises ``OSError``,
+    ``models`` are the model files, unless they are all models in the plan's folder. ``log`` is the log that is judged,
+    if nothing is simulated. Raises ``OSError``,
     ``NothingSelected`` and ``UserCodeRefused``.
     """
     manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
@@ -252,7 +254,9 @@ def begin_recording(
     try:
         record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
         record = replace(
-            record, models=tuple(relative_model_path(model, place.folder) for model in models or plan.models)
+            record,
+            models=tuple(relative_model_path(model, place.folder) for model in models or plan.models),
+            log="" if log is None else str(log),
         )
         recording.begin(record, policy, prepared_digest(place.folder))
         place.write_record(record)

@@ -1,0 +1,35 @@
+"""``python -m robbdd_tools.agent.export_bag RUN INDEX OUT sqlite|mcap``: write a stored trace as a rosbag2."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.logs.ros2_bag import write_ros2_bag
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.traces.mcap_file import read_trace, read_views
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.scene import cast_scene
+from robbdd_tools.world.staging import Staging
+
+
+def _main() -> int:
+    folder, index, out, storage = Path(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]), sys.argv[4]
+    spec = read_manifest(folder).scenarios[index]
+    try:
+        staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
+        cast = cast_scene(spec.scene, staging)
+        frames = {name: model.frame for name, model in cast.objects.items()}
+        path = trace_file(folder, index)
+        joints = read_views(path, ["/joints"])["/joints"]
+        write_ros2_bag(out, read_trace(path).trace, frames, joints, mcap=storage == "mcap")
+    except (RobbddError, SceneError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

@@ -1,0 +1,148 @@
+"""``python -m robbdd_tools.agent.judge_log FOLDER``: judge the scenario of a run folder by a log.
+
+The folder's manifest has one scenario, and its ``LOG_REQUEST`` names the log. The process writes the same messages as
+the agent, and keeps the trace and the margins as a simulated execution does.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+
+from robbdd_tools.agent.channel import Reports
+from robbdd_tools.agent.log_evidence import evidence_of
+from robbdd_tools.agent.printed_output import Printed, finish_output
+from robbdd_tools.agent.stack_dumps import install
+from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.catalog.coordination import END, emitter
+from robbdd_tools.judging.decisions import decide, occurred
+from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
+from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
+from robbdd_tools.logs.log_contents import LogContents
+from robbdd_tools.logs.log_table import read_events
+from robbdd_tools.logs.open_log import read_log
+from robbdd_tools.monitor.curve import Curve
+from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence
+from robbdd_tools.protocol.log_request import LOG_REQUEST, LogRequest
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.messages import (
+    LogLine,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+    UserCodeFailed,
+    judged,
+)
+from robbdd_tools.protocol.run_folder import curves_file, trace_file
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
+from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.traces.mcap_file import write_trace
+from robbdd_tools.world.errors import SceneError
+
+
+def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator[RunMessage]:
+    (spec,) = manifest.scenarios
+    began = perf_counter()
+    contents = _contents(request)
+    yield RunStarted(1, f"log {Path(request.path).name}")
+    yield ScenarioStarted(0)
+    try:
+        found = evidence_of(spec, contents, request)
+    except SceneError as error:
+        for clause in spec.clauses:
+            yield judged(0, clause.line, unknown(str(error), Cause.SCENE))
+        yield ScenarioFinished(0, contents.end, perf_counter() - began, 0.0)
+        yield RunFinished(True)
+        return
+    for remark in found.remarks:
+        yield LogLine("info", remark)
+    faults: set[str] = set()
+    for clause in spec.clauses:
+        verdict = _verdict(clause, found.evidence, spec)
+        if verdict.fault is not None and verdict.fault.id not in faults:
+            faults.add(verdict.fault.id)
+            yield UserCodeFailed(0, verdict.fault)
+        yield judged(0, clause.line, verdict)
+        if clause.role != "when":
+            trace, regions = found.evidence.trace, found.evidence.regions
+            ranges = margin_ranges(0, clause_of(clause, spec), clause, spec, trace, regions)
+            if ranges is not None:
+                yield ranges
+    _keep(folder, spec, found.evidence)
+    finish_output()
+    yield ScenarioFinished(0, round(found.evidence.trace.end, 6), perf_counter() - began, 0.0)
+    yield RunFinished(True)
+
+
+def _contents(request: LogRequest) -> LogContents:
+    contents = read_log(Path(request.path))
+    if not request.annotations:
+        return contents
+    texts = sorted((*contents.texts, *read_events(Path(request.annotations))), key=lambda stamp: stamp.time)
+    return replace(contents, texts=tuple(texts))
+
+
+def _verdict(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Verdict:
+    statement, trace = statement_of(clause), evidence.trace
+    if isinstance(statement, EventOccurrence):
+        return occurred(trace, statement.event, iteration_of(clause))
+    if isinstance(statement, BehaviourCall):
+        return _reported(statement, clause, trace, spec)
+    return decide(clause_of(clause, spec), trace, evidence.regions, spec.events.keys())
+
+
+def _reported(call: BehaviourCall, clause: ClauseSpec, trace: Trace, spec: ScenarioSpec) -> Verdict:
+    """Return the verdict on a behaviour. It holds if the log reports its last event."""
+    last = call.behaviour.events[-1]
+    names = [event for event, source in spec.events.items() if source in (last, emitter(spec.node, END))]
+    times = [time for name in names if (time := trace.event_time(name, iteration_of(clause))) is not None]
+    if not times:
+        return unknown(f"the log does not report the end of the behaviour, '{last}'", Cause.NO_EVENT)
+    return Verdict(Outcome.HOLDS, at=min(times), reason=f"the log reports '{last}'")
+
+
+def _keep(folder: Path, spec: ScenarioSpec, evidence: Evidence) -> None:
+    trace = evidence.trace
+    views = ((stamp.time, "/events", {"name": stamp.name, "time": stamp.time}) for stamp in trace.events)
+    write_trace(trace_file(folder, 0), evidence, views)
+    found: dict[int, tuple[Curve, ...]] = {}
+    for clause in spec.clauses:
+        statement = statement_of(clause)
+        if isinstance(statement, BehaviourCall):
+            found[clause.line] = behaviour_curves(statement, trace, spec.events, spec.node, iteration_of(clause))
+        elif clause.role != "when":
+            found[clause.line] = tuple(curves(clause_of(clause, spec), trace, evidence.regions))
+    write_curves(curves_file(folder, 0), (spec.variant, spec.variation), found, trace)
+
+
+def _main() -> int:
+    channel = Reports(reserve_channel()[1])
+    install()
+    sys.stdout = Printed(channel, sys.stdout)
+    folder = Path(sys.argv[1])
+    try:
+        request = from_plain(LogRequest, json.loads(load_text(folder / LOG_REQUEST, RESULT_SIZE)))
+        for message in _messages(read_manifest(folder), request, folder):
+            channel.send(message)
+    except (RobbddError, OSError, ValueError, KeyError, TypeError) as error:
+        channel.send(LogLine("error", str(error)))
+        channel.send(RunFinished(False))
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

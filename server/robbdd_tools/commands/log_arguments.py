@@ -1,0 +1,58 @@
+"""Arguments of ``robbdd judge`` for logs. Heavy modules are imported only when an argument is used."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.commands.judge import JudgeOptions
+
+
+def allow_log(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that only a log needs."""
+    log = parser.add_argument_group("logs")
+    text = "the scenario or execution that the robot executed; repeats"
+    log.add_argument("--scenario", metavar="NAME", action="append", help=text)
+    text = "the values with which the robot executed it: 'robot=panda and target=cube1'"
+    log.add_argument("--where", metavar="EXPRESSION", help=text)
+    text = "the frame of an element in the log (default: the frame of its name); repeats"
+    log.add_argument("--frame", metavar="ELEMENT=FRAME", type=_frame, action="append", help=text)
+    log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
+    text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
+    log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
+    text = "largest time between two observations that are interpolated, in seconds (default: 0.5)"
+    log.add_argument("--max-gap", metavar="SECONDS", type=_positive, default=0.5, help=text)
+    text = "largest number of samples per second (default: 200)"
+    log.add_argument("--rate", metavar="HZ", type=_positive, default=200.0, help=text)
+    log.add_argument("--no-store", action="store_true", help="do not store the result")
+
+
+def judge_options(options: argparse.Namespace) -> JudgeOptions:
+    """Return the options of the parsed arguments."""
+    from robbdd_tools.commands.judge import JudgeOptions
+    from robbdd_tools.workbench.log_judging import LogNames
+    from robbdd_tools.workbench.plan import Selection
+
+    names = LogNames(dict(options.frame or ()), options.world or "", options.max_gap, options.rate, options.events)
+    selection = Selection(options.scenario or (), options.where)
+    paths = (options.path, *options.more)
+    return JudgeOptions(options.run, paths, options.store, options.json, selection, names, keep=not options.no_store)
+
+
+def _frame(text: str) -> tuple[str, str]:
+    element, separator, frame = text.partition("=")
+    if not (element and separator and frame):
+        raise argparse.ArgumentTypeError(f"'{text}' must be ELEMENT=FRAME, for example cube1=camera/cube")
+    return element, frame
+
+
+def _positive(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0 < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' must be a number above 0")
+    return number

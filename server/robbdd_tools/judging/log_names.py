@@ -1,0 +1,83 @@
+"""Find the frame of each element, and the events, among the names of a log."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.event_names import inner_event
+
+if TYPE_CHECKING:
+    from robbdd_tools.logs.log_contents import TextStamp
+    from robbdd_tools.protocol.specs import ScenarioSpec
+
+_SEPARATORS = re.compile(r"[\s_.-]+")
+
+
+class FramesProblem(Exception):
+    """The frame of an element cannot be found; the message says why and what to write."""
+
+
+def local_name(curie: str) -> str:
+    """Return what follows the last colon of a CURIE, without the path of its set."""
+    return re.split(r"[:/#]", curie)[-1]
+
+
+def stated_frames(spec: ScenarioSpec) -> dict[str, str]:
+    """Return the frames that the observations of a scenario's policies name for elements (``string`` mappers)."""
+    policies = () if spec.execution is None else spec.execution.policies
+    found: dict[str, str] = {}
+    for policy in policies:
+        for observation in policy.observations:
+            for text, target in observation.mapped:
+                value: object = spec.values.get(target, target)
+                if isinstance(value, str):
+                    found[value] = text
+    return found
+
+
+def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> str:
+    """Return the frame of an element (CURIE) among the frames of a log.
+
+    ``stated`` maps elements (CURIE or local name) to frames. Without an entry, the frame has the name of the element,
+    or it has this name as a part of its path (``cell/cube1``). Case and separators are ignored. Raises
+    ``FramesProblem``.
+    """
+    known = sorted(frames)
+    name = local_name(element)
+    wanted = stated.get(element, stated.get(name))
+    if wanted is not None:
+        wanted = wanted.lstrip("/")
+        if wanted in known:
+            return wanted
+        raise FramesProblem(f"the log has no frame '{wanted}' for {element}{_nearest(wanted, known)}")
+    exact = [frame for frame in known if _plain(frame) == _plain(name)]
+    found = exact or [frame for frame in known if _plain(name) in map(_plain, frame.split("/"))]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise FramesProblem(f"several frames fit {element}: {', '.join(found)}; choose with --frame {name}=FRAME")
+    raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; name it with --frame {name}=FRAME")
+
+
+def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list[float]:
+    """Return the times (s) at which a log reports an event (CURIE), in order.
+
+    A text reports it by the name of the event or of its ``emitter``, with the usual decorations (``evt-pick-end``).
+    """
+    names = [local_name(event), emitter]
+    return [one.time for one in texts if one.text == event or inner_event(one.text.strip(), names) is not None]
+
+
+def _plain(name: str) -> str:
+    return _SEPARATORS.sub("", name).casefold()
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    near = get_close_matches(name, known, n=3, cutoff=0.5)
+    listed = near or known[:8]
+    if not listed:
+        return ": it has no frames"
+    return f"; {'nearest' if near else 'it has'}: {', '.join(listed)}"

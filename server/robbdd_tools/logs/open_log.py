@@ -1,0 +1,42 @@
+"""Find out what kind of log a path is, and read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from robbdd_tools.logs.foxglove_mcap import encodings, read_foxglove
+from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
+from robbdd_tools.logs.log_table import read_table
+from robbdd_tools.logs.ros_bag import read_ros_bag
+
+METADATA = "metadata.yaml"
+SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
+
+
+def is_log(path: Path) -> bool:
+    """Return whether a path is a log, by its name: a bag, a file of a bag, or a table."""
+    return (path / METADATA).is_file() or (path.suffix.lower() in SUFFIXES and path.is_file())
+
+
+def read_log(path: Path) -> LogContents:
+    """Return the contents of a log. Raises ``UnreadableLog``."""
+    if path.is_dir():
+        return _checked(path, read_ros_bag(path))
+    match path.suffix.lower():
+        case ".csv":
+            found = read_table(path)
+        case ".mcap" if "json" in encodings(path):
+            found = read_foxglove(path)
+        case ".bag" | ".db3" | ".mcap":
+            found = read_ros_bag(path)
+        case _:
+            raise UnreadableLog(f"{path} is no log: name a rosbag2 folder, or a file {', '.join(SUFFIXES)}")
+    return _checked(path, found)
+
+
+def _checked(path: Path, found: LogContents) -> LogContents:
+    if not found.tracks and not found.texts:
+        raise UnreadableLog(
+            f"{path} contains no message that can be judged: record transforms, poses, odometry or texts of events"
+        )
+    return found

@@ -1,0 +1,29 @@
+"""The request to judge a log, as the process that judges it reads it from the run folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+LOG_REQUEST = "log.json"
+"""Name of its file in the run folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogRequest:
+    """Which log is judged, and how its names are read.
+
+    - ``path``: the absolute path of the log.
+    - ``frames``: maps an element (local name or CURIE) to its frame in the log. The others are found by name.
+    - ``world``: the frame of the world; empty for the root of the frames that are used.
+    - ``max_gap``: the largest time (s) between two observations of a frame that are interpolated.
+    - ``rate``: the largest number of samples of the trace per second.
+    - ``annotations``: the absolute path of a table of further events; empty if there is none.
+    """
+
+    path: str
+    frames: Mapping[str, str] = field(default_factory=dict[str, str])
+    world: str = ""
+    max_gap: float = 0.5
+    rate: float = 200.0
+    annotations: str = ""

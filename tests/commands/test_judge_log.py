@@ -1,0 +1,209 @@
+"""``robbdd judge LOG`` and ``robbdd export``: bags of simulated runs, and logs written by hand."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fork_kit import ROBBDD
+from kit import EXAMPLES, schema_errors
+from logs.bags import Message, text, transform, write
+
+pytestmark = pytest.mark.physics
+NOT_IN_A_LOG = {"can reach", "has config"}
+"""Words of predicates on what a log does not contain."""
+ONE = ("--where", "thing=cube0 and goal=left_ws")
+
+
+def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    done = subprocess.run([*ROBBDD, *arguments], capture_output=True, encoding="utf-8", cwd=folder, env=os.environ)
+    assert "Traceback" not in done.stderr, done.stderr
+    return done
+
+
+def clauses(path: Path) -> list[dict[str, Any]]:
+    document = json.loads(path.read_text(encoding="utf-8"))
+    assert schema_errors("run.schema.json", document) == []
+    (scenario,) = document["scenarios"]
+    return scenario["clauses"]
+
+
+@pytest.mark.parametrize(
+    ("example", "model", "storage"),
+    [
+        ("pickplace", "pickplace.bddx", "sqlite"),
+        ("sorting", "sorting.bdd", "mcap"),
+        ("shelf", "shelf.bdd", "sqlite"),
+        ("deadlines", "deadlines.bdd", "mcap"),
+        ("relatedstories", "stories.bdd", "sqlite"),
+    ],
+)
+def test_a_bag_of_a_run_gives_its_verdicts_and_margins(example: str, model: str, storage: str, tmp_path: Path) -> None:
+    folder = shutil.copytree(EXAMPLES / example, tmp_path / "models")
+    assert robbdd(folder, "run", model, "--first", "1", "--json", "run.json").returncode == 0
+    run = json.loads((folder / "run.json").read_text(encoding="utf-8"))["scenarios"]
+    variant = run[0]["variant"]
+    robbdd(folder, "export", "latest", "--ros2", "-o", "bag", *(["--mcap"] if storage == "mcap" else []))
+    bag = "bag" if (folder / "bag" / "metadata.yaml").exists() else "bag/1"
+    values = {name.rpartition("var-")[2]: value for name, value in run[0]["values"].items()}
+    where = " and ".join(f"{name}={one.rpartition(':')[2]}" for name, one in values.items() if isinstance(one, str))
+    chosen = ["--where", where, "--scenario", variant]
+    done = robbdd(folder, "judge", bag, model, "--no-store", "--json", "log.json", *chosen)
+    assert done.returncode in (0, 1), done.stderr
+    for simulated, logged in zip(run[0]["clauses"], clauses(folder / "log.json"), strict=True):
+        if any(words in simulated["sentence"] for words in NOT_IN_A_LOG):
+            assert logged["verdict"] == "unknown"
+            continue
+        assert logged["verdict"] == simulated["verdict"], logged
+        # Stamps are rounded to nanoseconds. The camera that a policy simulates adds noise of 2 mm to each axis.
+        tolerance = 0.02 if example == "pickplace" else 1e-6
+        if logged["robustness"] is not None:
+            assert logged["robustness"] == pytest.approx(simulated["robustness"], abs=tolerance), logged["sentence"]
+
+
+@pytest.fixture(scope="module")
+def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return shutil.copytree(EXAMPLES / "pickplace", tmp_path_factory.mktemp("log") / "models")
+
+
+IN_BIN = (0.55, 0.3, 0.86)
+
+
+def drive(
+    lost: tuple[float, float] | None = None, end: tuple[float, float, float] = IN_BIN, cube: str = "cube0"
+) -> list[Message]:
+    """Write what a real cell would record, at 50 Hz for 10 s: a cube is carried from the table to a place.
+
+    From the first to the second time of ``lost``, the cube is not seen; ``cube`` is its frame.
+    """
+    found = [
+        transform("table", (0.5, 0.0, 0.8), stamp=0.0, topic="/tf_static"),
+        transform("bin_left", (0.55, 0.3, 0.8), stamp=0.0, topic="/tf_static"),
+        transform("bin_right", (0.55, -0.3, 0.8), stamp=0.0, topic="/tf_static"),
+        text("pick-start", 1.0),
+        text("pick-end", 3.0),
+        text("place-start", 6.0),
+        text("place-end", 8.0),
+        text("", 0.0, "/panda/holds"),
+        text("cube0", 2.9, "/panda/holds"),
+        text("", 7.9, "/panda/holds"),
+    ]
+    begin = (0.45, 0.0, 0.825)
+    for tick in range(501):
+        time = tick / 50
+        share = min(max((time - 3.0) / 4.0, 0.0), 1.0)
+        lift = 0.2 * math.sin(math.pi * share)
+        place = [one + share * (other - one) for one, other in zip(begin, end, strict=True)]
+        if lost is None or not lost[0] < time < lost[1]:
+            found.append(transform(cube, (place[0], place[1], place[2] + lift), stamp=time))
+        found.append(transform("panda", (place[0], place[1], place[2] + lift), stamp=time))
+    return found
+
+
+def judged(models: Path, folder: Path, messages: list[Message], *more: str) -> tuple[list[dict[str, Any]], str]:
+    shutil.rmtree(folder / "drive", ignore_errors=True)
+    bag = write(folder / "drive", messages)
+    out = folder / "log.json"
+    done = robbdd(models, "judge", str(bag), "pickplace.bdd", "--no-store", "--json", str(out), *ONE, *more)
+    assert done.returncode in (0, 1), done.stderr
+    return clauses(out), done.stderr
+
+
+def verdicts(found: list[dict[str, Any]]) -> dict[str, str]:
+    return {one["name"].rpartition(".")[2]: one["verdict"] for one in found}
+
+
+def test_a_drive_that_puts_the_cube_into_the_bin_holds(models: Path, tmp_path: Path) -> None:
+    found, remarks = judged(models, tmp_path, drive())
+    assert set(verdicts(found).values()) == {"holds"}, found
+    assert "the log does not report crit:evt-end: the end of the log counts" in remarks
+
+
+def test_a_cube_beside_the_bin_violates(models: Path, tmp_path: Path) -> None:
+    found, _ = judged(models, tmp_path, drive(end=(0.55, 0.0, 0.825)))
+    assert verdicts(found)["at-goal"] == "violated"
+    goal = next(one for one in found if one["name"].endswith("at-goal"))
+    assert goal["robustness"] < -0.05
+    assert goal["at"] == pytest.approx(8.0)
+
+
+def test_what_was_not_seen_is_unknown_with_the_gap(models: Path, tmp_path: Path) -> None:
+    found, _ = judged(models, tmp_path, drive((7.0, 9.0)))
+    goal = next(one for one in found if one["name"].endswith("at-goal"))
+    assert (goal["verdict"], goal["reason"]) == ("unknown", "env:cube0 was not observed between 7.00 s and 9.00 s")
+    found, _ = judged(models, tmp_path, drive((7.0, 9.0)), "--max-gap", "3")
+    assert verdicts(found)["at-goal"] == "holds"
+
+
+def test_an_event_that_the_log_lacks_is_unknown_or_comes_from_a_table(models: Path, tmp_path: Path) -> None:
+    silent = [one for one in drive() if one.topic != "/events"]
+    found, _ = judged(models, tmp_path, silent)
+    assert verdicts(found)["at-goal"] == "unknown"
+    assert "never occurred" in next(one for one in found if one["name"].endswith("at-goal"))["reason"]
+    table = tmp_path / "events.csv"
+    table.write_text("time,event\n1,pick-start\n3,pick-end\n6,place-start\n8,evt-place-end\n", encoding="utf-8")
+    found, _ = judged(models, tmp_path, silent, "--events", str(table))
+    assert set(verdicts(found).values()) == {"holds"}, found
+
+
+def test_a_frame_of_another_name_is_named_by_an_argument(models: Path, tmp_path: Path) -> None:
+    messages = drive(cube="object_7")
+    found, remarks = judged(models, tmp_path, messages)
+    assert verdicts(found)["at-goal"] == "unknown"
+    assert "the log has no frame for env:cube0" in remarks
+    assert "name it with --frame cube0=FRAME" in remarks
+    found, _ = judged(models, tmp_path, messages, "--frame", "cube0=object_7")
+    assert verdicts(found)["at-goal"] == "holds"
+
+
+def test_a_log_of_several_scenarios_is_refused_with_their_values(models: Path, tmp_path: Path) -> None:
+    bag = write(tmp_path / "drive", drive())
+    done = robbdd(models, "judge", str(bag), "pickplace.bdd")
+    assert done.returncode == 2
+    assert "drive is the log of one execution, but 4 scenarios fit" in done.stderr
+    assert "thing = cube0, robot = panda, source = table_ws, goal = left_ws" in done.stderr
+    assert not (models / ".robbdd").exists()
+
+
+def test_the_result_is_a_stored_run_that_is_judged_again_and_not_simulated(models: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(models, tmp_path / "models")
+    bag = write(tmp_path / "drive", drive())
+    done = robbdd(folder, "judge", str(bag), "pickplace.bdd", *ONE)
+    assert done.returncode == 0, done.stderr
+    assert "kept as run 1" in done.stderr
+    assert "1 hold" in robbdd(folder, "runs").stdout or "log drive" in robbdd(folder, "runs").stdout
+    again = robbdd(folder, "judge", "1", "pickplace.bdd")
+    assert again.returncode == 0, again.stderr
+    refused = robbdd(folder, "replay", "1")
+    assert refused.returncode == 2
+    assert "drive is a log: nothing of it can be simulated again" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("drive.bag", b"", "drive.bag cannot be read as a ROS bag"),
+        ("drive.mcap", b"\x89MCAP0\r\n", "drive.mcap cannot be read as MCAP"),
+        ("drive.csv", b"a,b\n", "drive.csv:1: there is no column 'time'"),
+    ],
+)
+def test_a_damaged_log_is_refused(name: str, content: bytes, words: str, models: Path, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(content)
+    done = robbdd(models, "judge", str(tmp_path / name), "pickplace.bdd", *ONE, "--no-store")
+    assert done.returncode == 2
+    assert words in done.stderr
+
+
+def test_a_folder_that_exists_is_not_written(models: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(models, tmp_path / "models")
+    assert robbdd(folder, "run", "pickplace.bdd", "--first", "1").returncode == 0
+    done = robbdd(folder, "export", "1", "--ros2", "-o", str(tmp_path))
+    assert done.returncode == 2
+    assert "exists: name a new folder" in done.stderr

@@ -1,0 +1,51 @@
+"""Which frame an element is, and when a log reports an event."""
+
+from __future__ import annotations
+
+import pytest
+
+from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of
+from robbdd_tools.logs.log_contents import TextStamp
+
+FRAMES = ("map", "cup_1", "left/cup-2", "right/cup2", "Bin")
+
+
+@pytest.mark.parametrize(
+    ("element", "frame"),
+    [("env:bin", "Bin"), ("env:cup1", "cup_1"), ("env:parts/cup1", "cup_1"), ("env:CUP_1", "cup_1")],
+)
+def test_a_frame_is_found_by_the_name_of_the_element(element: str, frame: str) -> None:
+    assert frame_of(element, FRAMES, {}) == frame
+
+
+@pytest.mark.parametrize("stated", [{"env:cup1": "right/cup2"}, {"cup1": "/right/cup2"}])
+def test_a_stated_frame_comes_first(stated: dict[str, str]) -> None:
+    assert frame_of("env:cup1", FRAMES, stated) == "right/cup2"
+
+
+@pytest.mark.parametrize(
+    ("element", "stated", "words"),
+    [
+        ("env:cup2", {}, "several frames fit env:cup2: left/cup-2, right/cup2; choose with --frame cup2=FRAME"),
+        ("env:cup_3", {}, "the log has no frame for env:cup_3; nearest: cup_1"),
+        ("env:screw", {}, "name it with --frame screw=FRAME"),
+        ("env:bin", {"bin": "bn"}, "the log has no frame 'bn' for env:bin"),
+    ],
+)
+def test_what_is_missing_is_named_with_what_there_is(element: str, stated: dict[str, str], words: str) -> None:
+    with pytest.raises(FramesProblem) as caught:
+        frame_of(element, FRAMES, stated)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["ex:evt-pick-end", "pick_ended", "PickEnd", " E_PICK_END ", "evt-pick-end", "grasped"]
+)
+def test_a_text_reports_an_event_by_its_name_or_its_emitters(text: str) -> None:
+    texts = [TextStamp("/events", text, 2.0), TextStamp("/events", "pick-start", 1.0), TextStamp("/log", text, 3.0)]
+    assert occurrences_of("ex:grasped", "pick-end", texts) == [2.0, 3.0]
+
+
+def test_a_longer_text_reports_nothing() -> None:
+    texts = [TextStamp("/log", "waiting for pick-end", 1.0), TextStamp("/log", "", 2.0)]
+    assert occurrences_of("ex:evt-pick-end", "pick-end", texts) == []

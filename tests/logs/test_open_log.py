@@ -1,0 +1,189 @@
+"""Logs of each kind are read alike; damaged and foreign ones are refused with a reason."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mcap.writer import Writer
+
+from logs.bags import Message, pose, text, transform, write
+from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
+from robbdd_tools.logs.open_log import is_log, read_log
+
+DRIVE = [
+    transform("bench", (1, 0, 0.5), stamp=100.0, topic="/tf_static"),
+    transform("cup", (0, 0, 0), stamp=100.0),
+    text("pick-start", 100.1),
+    transform("cup", (1, 0, 0), stamp=100.2),
+    text("pick-end", 100.3),
+]
+TABLE = """time, frame, x, y, z, event
+100.0, cup, 0, 0, 0,
+100.1, , , , , pick-start
+100.2, cup, 1, 0, 0,
+100.3, , , , , pick-end
+"""
+
+
+def summary(found: LogContents) -> tuple[object, ...]:
+    cup = found.tracks["cup"]
+    return (
+        [(round(time, 6), *place) for time, place in zip(cup.times.tolist(), cup.positions.tolist(), strict=True)],
+        [(one.text, round(one.time, 6)) for one in found.texts],
+        round(found.end, 6),
+    )
+
+
+EXPECTED = (
+    [(0.0, 0.0, 0.0, 0.0), (0.2, 1.0, 0.0, 0.0)],
+    [("pick-start", 0.1), ("pick-end", 0.3)],
+    0.3,
+)
+
+
+@pytest.mark.parametrize("kind", ["sqlite", "mcap", "ros1"])
+def test_a_bag_of_each_kind_says_the_same(kind: str, tmp_path: Path) -> None:
+    path = write(tmp_path / ("drive.bag" if kind == "ros1" else "drive"), DRIVE, kind)
+    found = read_log(path)
+    assert is_log(path)
+    assert summary(found) == EXPECTED
+    assert (found.tracks["bench"].static, found.tracks["cup"].static) == (True, False)
+    assert found.tracks["bench"].parent == "map"
+
+
+def test_a_file_of_a_bag_is_read_without_its_metadata(tmp_path: Path) -> None:
+    folder = write(tmp_path / "drive", DRIVE, "mcap")
+    (path,) = folder.glob("*.mcap")
+    moved = path.rename(tmp_path / "alone.mcap")
+    assert summary(read_log(moved)) == EXPECTED
+
+
+def test_a_table_says_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(TABLE, encoding="utf-8")
+    assert is_log(path)
+    assert summary(read_log(path)) == EXPECTED
+
+
+def foxglove(path: Path, library: str = "test") -> Path:
+    def stamp(time: float) -> dict[str, int]:
+        return {"sec": int(time), "nsec": round(time % 1 * 1e9)}
+
+    def moved(time: float, x: float) -> tuple[str, float, object]:
+        turn = {"w": 1, "x": 0, "y": 0, "z": 0}
+        frame = {"timestamp": stamp(time), "parent_frame_id": "map", "child_frame_id": "cup", "rotation": turn}
+        return "foxglove.FrameTransform", time, {**frame, "translation": {"x": x, "y": 0, "z": 0}}
+
+    messages = [
+        moved(100.0, 0),
+        ("foxglove.Log", 100.1, {"message": "pick-start"}),
+        moved(100.2, 1),
+        ("foxglove.Log", 100.3, {"message": "pick-end"}),
+    ]
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library=library)
+        channels: dict[str, int] = {}
+        for name, time, content in messages:
+            if name not in channels:
+                number = writer.register_schema(name, "jsonschema", b"{}")
+                channels[name] = writer.register_channel(f"/{name}", "json", number)
+            log_time = round(time * 1e9)
+            writer.add_message(channels[name], log_time, json.dumps(content).encode(), log_time)
+        writer.finish()
+    return path
+
+
+def test_foxglove_messages_say_the_same(tmp_path: Path) -> None:
+    assert summary(read_log(foxglove(tmp_path / "drive.mcap"))) == EXPECTED
+
+
+def test_order_and_repetition_of_messages_do_not_matter(tmp_path: Path) -> None:
+    shuffled = [DRIVE[4], DRIVE[3], DRIVE[0], DRIVE[2], DRIVE[1], DRIVE[3]]
+    assert summary(read_log(write(tmp_path / "drive", shuffled))) == EXPECTED
+
+
+def test_a_pose_topic_is_a_frame_of_its_name(tmp_path: Path) -> None:
+    path = write(tmp_path / "drive", [pose("/cup/pose", (1, 2, 3), stamp=5.0), pose("/cup/pose", (1, 2, 4), stamp=6.0)])
+    assert read_log(path).tracks["cup/pose"].positions.tolist() == [[1, 2, 3], [1, 2, 4]]
+
+
+def test_clocks_that_differ_are_corrected_and_stated(tmp_path: Path) -> None:
+    """The headers have simulated time, the reception has the wall clock's."""
+    late = 1_700_000_000.0
+    messages = [
+        transform("cup", (0, 0, 0), stamp=1.0, received=late + 1.0),
+        text("pick-start", late + 1.5),
+        transform("cup", (0, 0, 0), stamp=2.0, received=late + 2.0),
+    ]
+    found = read_log(write(tmp_path / "drive", messages))
+    assert [(one.text, round(one.time, 3)) for one in found.texts] == [("pick-start", 0.5)]
+    assert "the time of reception is 1700000000.000 s ahead of the headers, and was corrected" in found.remarks
+
+
+def test_values_that_are_no_poses_are_left_out(tmp_path: Path) -> None:
+    messages = [
+        transform("cup", (0, 0, 0), stamp=1.0),
+        transform("cup", (float("nan"), 0, 0), stamp=2.0),
+        transform("cup", (1, 0, 0), stamp=3.0, turn=(0, 0, 0, 0)),
+        transform("cup", (2, 0, 0), stamp=4.0, turn=(2, 0, 0, 0)),
+    ]
+    found = read_log(write(tmp_path / "drive", messages)).tracks["cup"]
+    assert found.times.tolist() == [0.0, 3.0]
+    assert np.linalg.norm(found.orientations, axis=1).tolist() == [1.0, 1.0]
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(UnreadableLog) as caught:
+        read_log(path)
+    return str(caught.value)
+
+
+def test_two_parents_of_a_frame_are_refused(tmp_path: Path) -> None:
+    messages = [transform("cup", (0, 0, 0), stamp=1.0), transform("cup", (0, 0, 0), stamp=2.0, parent="camera")]
+    words = "frame 'cup' has two parents, 'map' and 'camera': publish one of them only"
+    assert words in refused(write(tmp_path / "drive", messages))
+
+
+@pytest.mark.parametrize("kind", ["sqlite", "mcap", "ros1"])
+@pytest.mark.parametrize("damage", ["empty", "half", "noise"])
+def test_a_damaged_bag_is_refused(kind: str, damage: str, tmp_path: Path) -> None:
+    path = write(tmp_path / ("drive.bag" if kind == "ros1" else "drive"), DRIVE * 20, kind)
+    file = path if path.is_file() else next(one for one in path.iterdir() if one.suffix in (".db3", ".mcap"))
+    data = file.read_bytes()
+    noise = np.random.default_rng(1).integers(0, 256, len(data), dtype=np.uint8).tobytes()
+    file.write_bytes({"empty": b"", "half": data[: len(data) // 2], "noise": noise}[damage])
+    assert path.name in refused(path)
+
+
+def test_a_log_without_anything_to_judge_is_refused(tmp_path: Path) -> None:
+    def make(store: Any) -> Any:
+        return store.types["std_msgs/msg/Bool"](data=True)
+
+    path = write(tmp_path / "drive", [Message("/ok", 1.0, "std_msgs/msg/Bool", make)])
+    assert "contains no message that can be judged" in refused(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("x,y\n1,2\n", "drive.csv:1: there is no column 'time'"),
+        ("", "drive.csv:1: there is no column 'time'"),
+        ("time,frame,x,y,z\n0,cup,1,2,three\n", "drive.csv:2: column 'z' must be a number, but is 'three'"),
+        ("time,frame,x,y,z\nnoon,cup,1,2,3\n", "drive.csv:2: column 'time' must be a number, but is 'noon'"),
+        ("time,event\n", "contains no message that can be judged"),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_refused_with_its_line(content: str, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(content, encoding="utf-8")
+    assert words in refused(path)
+
+
+def test_other_paths_are_no_logs(tmp_path: Path) -> None:
+    (tmp_path / "model.bdd").write_text("", encoding="utf-8")
+    assert not any(map(is_log, (tmp_path, tmp_path / "model.bdd", tmp_path / "gone.csv", Path("latest"))))
