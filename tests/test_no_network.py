@@ -62,6 +62,7 @@ COMMANDS = (
     "view pickplace.bdd -o out.png",
     "format --check .",
     "runs --store runs",
+    "export latest --ros2 -o bag --store runs",
     "new out/bench",
     "doctor",
 )

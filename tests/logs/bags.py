@@ -70,7 +70,11 @@ def pose(topic: str, place: Sequence[float], *, stamp: float, parent: str = "map
 
 def text(words: str, received: float, topic: str = "/events") -> Message:
     """A text on a topic."""
-    return Message(topic, received, "std_msgs/msg/String", lambda store: store.types["std_msgs/msg/String"](data=words))
+
+    def make(store: Any) -> Any:
+        return store.types["std_msgs/msg/String"](data=words)
+
+    return Message(topic, received, "std_msgs/msg/String", make)
 
 
 def header(store: Any, stamp: float, frame: str) -> Any:

@@ -164,8 +164,8 @@ def test_a_gap_in_a_log_is_unknown_and_named() -> None:
 
 def test_a_comparison_with_a_missing_value_passes_nothing() -> None:
     def stays_low(evidence: Evidence, _: Arguments) -> FloatArray:
-        low = ~(evidence.position("ball")[:, 2] > 0.5)
-        return low * 2.0 - 1.0
+        high = evidence.position("ball")[:, 2] > 0.5
+        return np.where(high, -1.0, 1.0)
 
     trace = replace(trace_of({"ball": heights([0.1, float("nan")])}, {"start": 0.0, "end": 0.1}), log="drive.mcap")
     found = judge(replace(ABOVE, evaluate=stays_low), {"thing": "ball"}, ALL, trace, {})

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 START, END = "scenario-start", "scenario-end"
 HOLDS = "holds"
-"""Last part of the topic on which an agent says what it holds: a name, or empty for nothing (``/panda/holds``)."""
+"""Last part of the topic with the name of the object that an agent holds, or with an empty text: ``/panda/holds``."""
 
 
 @dataclass(frozen=True, slots=True)

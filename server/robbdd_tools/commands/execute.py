@@ -41,9 +41,9 @@ def follow_run(run: Run) -> int:
 
 
 def follow(work: Followed, total: int | None = None, made: str = "simulated in") -> int:
-    """Show the progress of a replay or a judgement of ``total`` scenarios; ``made`` as in ``Display``. Raises ``OSError``.
+    """Show the progress of a replay or a judgement of ``total`` scenarios; ``made`` is as in ``Display``.
 
-    Returns the number of the signal that ended it, or 0.
+    Raises ``OSError``. Returns the number of the signal that ended it, or 0.
     """
     return _follow(work, total, None, made)
 

@@ -11,7 +11,7 @@ LOG_REQUEST = "log.json"
 
 @dataclass(frozen=True, slots=True)
 class LogRequest:
-    """Which log is judged, and how its names are read.
+    """A log and the way in which its names are read.
 
     - ``path``: the absolute path of the log.
     - ``frames``: maps an element (local name or CURIE) to its frame in the log. The others are found by name.
