@@ -88,7 +88,9 @@ def test_predicates_are_offered_as_whole_phrases() -> None:
 
 def test_conditions_and_windows_are_offered_after_a_predicate() -> None:
     assert "whenever" in labels(edited("<goal>, before", "<goal> $0, before"))
-    assert {"after", "at some time from", "before", "from", "within"} <= set(labels(edited("before <pick-start>", "$0")))
+    assert {"after", "at some time from", "before", "from", "within"} <= set(
+        labels(edited("before <pick-start>", "$0"))
+    )
     assert "is held by" in labels(edited("<goal>, before", "<goal> whenever <part> $0, before"))
 
 

@@ -11,7 +11,7 @@ from kit import FOLDER, MODEL, SCENE
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
-from robbdd_tools.lsp.framing import Answer, Request
+from robbdd_tools.lsp.framing import Answer, Forget, Request
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.worker import MAX_LEFT, Inbox, Worker
 from robbdd_tools.names.project import Project
@@ -67,7 +67,7 @@ def test_one_validation_is_let_through_while_newer_ones_never_cease_to_come(monk
     def always(_: str) -> bool:
         return True
 
-    inbox = Inbox(io.BytesIO())
+    inbox: Inbox[Request | Forget] = Inbox(io.BytesIO())
     monkeypatch.setattr(inbox, "has_newer", always)
     worker = Worker(inbox)
 
