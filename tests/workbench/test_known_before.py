@@ -23,7 +23,7 @@ KNOWN_BEFORE = {
     "no-evaluator": r"no step definition for ",
     "no-emitter": r"nothing in the scenario emits ",
     "not-simulated": r"the ROS action '|its verdicts come from the ROS topic |no ROS",
-    "setting": r"there is no configuration '|cannot be configured: | has no \w+: it applies to ",
+    "setting": r"there is no configuration '|cannot be (configured: |'.*': it must be )| has no \w+: it applies to ",
     "single-element": r"needs one \w+, not a set of them",
     "no-room": r"there is room for ",
     "no-region": r"nothing in the scene carries that workspace",

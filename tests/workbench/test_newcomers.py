@@ -1,0 +1,77 @@
+"""Models that were written from the published language and the paper alone, in a newcomer's names and forms.
+
+Each has its own traits: words inside names, events in several styles, nested conditions (``kitchen``); ``for all`` and
+sets of places (``ewaste``); several arms and namespaces, and faults (``handover``); several stories (``stories``); the
+paper's form with an event between the behaviour's ends (``printed``); JSON-LD in three files as it is published.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from rdflib import Graph
+from rdflib.compare import isomorphic
+
+import robbdd_tools as robbdd
+from robbdd_tools.cli import main
+from robbdd_tools.graph.rdf.serialize import parse
+from robbdd_tools.workbench.folder import Keeping
+from robbdd_tools.workbench.plan import Plan, Selection
+from workbench.test_known_before import assert_known, covering, unknown
+
+MODELS = sorted(Path(__file__).with_name("newcomers").glob("*.bdd"))
+PUBLISHED = ("story.json", "templates.json", "environment.json")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return shutil.copytree(MODELS[0].parent, tmp_path / "newcomers")
+
+
+def verdicts(model: robbdd.Model) -> set[str]:
+    with Plan.of(model, Selection(choices=[covering(model)])).run(seed=1, keeping=Keeping(keep=False)) as run:
+        return {clause.verdict for result in run for clause in result.clauses}
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_each_unknown_is_known_before_the_run(path: Path, folder: Path) -> None:
+    assert_known(unknown(folder / path.name))
+
+
+@pytest.mark.physics
+def test_the_printed_form_and_the_published_graph_hold(folder: Path) -> None:
+    assert verdicts(robbdd.load(folder / "printed.bdd")) == {"holds"}
+    published = robbdd.load(*(folder / name for name in PUBLISHED))
+    assert published.diagnostics == ()
+    assert verdicts(published) == {"holds"}
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_the_graph_of_a_model_becomes_text_with_the_same_graph(path: Path, folder: Path) -> None:
+    graph = robbdd.load(folder / path.name).graph()
+    (folder / "graph.ttl").write_text(graph, encoding="utf-8")
+    assert main(["import", str(folder / "graph.ttl"), "-o", str(folder / "imported.bdd")]) == 0
+    again = robbdd.load(folder / "imported.bdd").graph()
+    assert isomorphic(without_positions(graph), without_positions(again))
+
+
+def without_positions(text: str) -> Graph:
+    graph = parse(text, "ttl")
+    graph.remove((None, next(term for term in graph.predicates() if str(term).endswith("#position")), None))
+    return graph
+
+
+def test_the_warnings_of_a_model_say_what_is_wrong_where(folder: Path) -> None:
+    every = robbdd.load(folder / "handover.bdd").diagnostics
+    warnings = [one for one in every if one.severity < robbdd.Severity.INFORMATION]
+    found = {(one.place.file.rpartition("/")[2], one.place.line, one.code) for one in warnings}
+    assert found == {
+        ("handover.bdd", 27, "no-evaluator"),
+        ("handover.bdd", 38, "setting"),
+        ("handover.bdd", 41, "no-region"),
+        ("handover.bdd", 51, "setting"),
+        ("cell.scene", 3, "no-model"),
+    }
