@@ -14,7 +14,7 @@ import pytest
 
 from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
-from logs.bags import Message, text, transform, write
+from logs.bags import Message, text, transform, truth, write
 
 pytestmark = pytest.mark.physics
 NOT_IN_A_LOG = {"can reach", "has config"}
@@ -161,6 +161,57 @@ def test_a_frame_of_another_name_is_named_by_an_argument(models: Path, tmp_path:
     assert "name it with --frame cube0=FRAME" in remarks
     found, _ = judged(models, tmp_path, messages, "--frame", "cube0=object_7")
     assert verdicts(found)["at-goal"] == "holds"
+
+
+ROBOT = """import "pickplace.bdd"
+import "bench.scenex"
+ns exec = 'https://example.org/robbdd/execution/'
+bhv impl (ns=exec) server { bhv action: "/pick" }
+obs provider (ns=exec) camera { ros transform listener reference-frame: "map" update-rate: 30 Hz }
+observation (ns=exec) things {
+    provider: <camera>
+    observes var <pick-place.thing>
+    observes var <pick-place.goal>
+    entity mapper: string { "object_7" to obj <cubes.cube0> }
+}
+obs policy (ns=exec) near-goal for <pick-place.at-goal> {
+    observations: { <things> }
+    evaluator: linear distance { less-than: 0.2 m }
+}
+obs policy (ns=exec) starts for <pick-place.at-source> { trinary topic: "/seen" }
+Scenario Exec (ns=exec) on-the-robot {
+    variant: <tidy-bench.part-to-bin>
+    scene inst: <bench_sim>
+    bhv: <server>
+    policies: { <near-goal>, <starts> }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("seen", "verdict", "reason"),
+    [
+        ([(0.0, 1)], "holds", ""),
+        ([(0.0, 1), (0.9, 0)], "violated", ""),
+        ([(0.0, 1), (0.9, 2)], "unknown", "the topic '/seen' reports nothing known at 1.00 s"),
+        ([(2.0, 1)], "unknown", "the topic '/seen' reports nothing known at 1.00 s"),
+        ([], "unknown", "its verdicts come from the ROS topic '/seen', which the log does not have"),
+    ],
+)
+def test_the_observations_and_topics_of_an_execution_decide(
+    seen: list[tuple[float, int]], verdict: str, reason: str, models: Path, tmp_path: Path
+) -> None:
+    folder = shutil.copytree(models, tmp_path / "models")
+    (folder / "robot.bddx").write_text(ROBOT, encoding="utf-8")
+    bag = write(tmp_path / "drive", [*drive(cube="object_7"), *(truth("/seen", value, time) for time, value in seen)])
+    out = tmp_path / "log.json"
+    done = robbdd(folder, "judge", str(bag), "robot.bddx", "--no-store", "--json", str(out), *ONE)
+    assert done.returncode in (0, 1), done.stderr
+    found = {one["name"].rpartition(".")[2]: one for one in clauses(out)}
+    assert (found["at-source"]["verdict"], found["at-source"]["reason"]) == (verdict, reason)
+    assert found["at-goal"]["verdict"] == "holds"
+    # The bin's region is 0.06 m above its origin.
+    assert 0.1 < found["at-goal"]["robustness"] < 0.2
 
 
 def test_a_log_of_several_scenarios_is_refused_with_their_values(models: Path, tmp_path: Path) -> None:

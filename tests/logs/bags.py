@@ -12,6 +12,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 ROS1, ROS2 = get_typestore(Stores.ROS1_NOETIC), get_typestore(Stores.ROS2_HUMBLE)
+TRINARY = "bdd_ros2_interfaces/msg/Trinary"
+ROS2.register(get_types_from_msg("uint8 FALSE=0\nuint8 TRUE=1\nuint8 UNKNOWN=2\nuint8 value", TRINARY))
 ROS1.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
 
 
@@ -75,6 +77,17 @@ def text(words: str, received: float, topic: str = "/events") -> Message:
         return store.types["std_msgs/msg/String"](data=words)
 
     return Message(topic, received, "std_msgs/msg/String", make)
+
+
+def truth(topic: str, value: bool | int, received: float) -> Message:
+    """A truth value, as ``Bool``, or as ``Trinary``: 0 is false, 1 is true, 2 is unknown."""
+
+    def make(store: Any) -> Any:
+        if isinstance(value, bool):
+            return store.types["std_msgs/msg/Bool"](data=value)
+        return store.types[TRINARY](value=value)
+
+    return Message(topic, received, "std_msgs/msg/Bool" if isinstance(value, bool) else TRINARY, make)
 
 
 def header(store: Any, stamp: float, frame: str) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from mcap.writer import Writer
 
-from logs.bags import Message, pose, text, transform, write
+from logs.bags import Message, pose, text, transform, truth, write
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.open_log import is_log, read_log
 
@@ -137,6 +137,20 @@ def test_values_that_are_no_poses_are_left_out(tmp_path: Path) -> None:
     assert np.linalg.norm(found.orientations, axis=1).tolist() == [1.0, 1.0]
 
 
+def test_truths_are_reported_by_topics(tmp_path: Path) -> None:
+    messages = [
+        transform("cup", (0, 0, 0), stamp=1.0),
+        truth("/seen", True, 1.5),
+        truth("/near", 2, 1.5),
+        truth("/near", 1, 2.0),
+        truth("/near", 0, 3.0),
+    ]
+    found = read_log(write(tmp_path / "drive", messages)).truths
+    assert (found["/seen"].times.tolist(), found["/seen"].values.tolist()) == ([0.5], [1.0])
+    assert found["/near"].times.tolist() == [0.5, 1.0, 2.0]
+    assert str(found["/near"].values.tolist()) == "[nan, 1.0, -1.0]"
+
+
 def refused(path: Path) -> str:
     with pytest.raises(UnreadableLog) as caught:
         read_log(path)
@@ -162,9 +176,9 @@ def test_a_damaged_bag_is_refused(kind: str, damage: str, tmp_path: Path) -> Non
 
 def test_a_log_without_anything_to_judge_is_refused(tmp_path: Path) -> None:
     def make(store: Any) -> Any:
-        return store.types["std_msgs/msg/Bool"](data=True)
+        return store.types["std_msgs/msg/Int32"](data=1)
 
-    path = write(tmp_path / "drive", [Message("/ok", 1.0, "std_msgs/msg/Bool", make)])
+    path = write(tmp_path / "drive", [Message("/ok", 1.0, "std_msgs/msg/Int32", make)])
     assert "contains no message that can be judged" in refused(path)
 
 

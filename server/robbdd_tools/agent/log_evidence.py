@@ -20,7 +20,7 @@ from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.logs.log_contents import LogContents, TextStamp
+    from robbdd_tools.logs.log_contents import LogContents, TextStamp, Truths
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
     from robbdd_tools.world.pose import Pose
@@ -74,6 +74,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         outlines={name: outline_of(model) for name, model in cast.objects.items()},
         contents={workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains},
         log=Path(request.path).name,
+        truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
         immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
     )
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)))
@@ -135,7 +136,9 @@ def _times(
     seen = np.unique(np.concatenate([*moving, np.empty(0)]))
     slots = np.floor(seen * rate)
     kept = seen[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(seen) else seen
-    times = np.unique(np.concatenate([kept, [stamp.time for stamp in events], [0.0, contents.end]]))
+    reported = [found.times for found in contents.truths.values()]
+    edges = [*(stamp.time for stamp in events), 0.0, contents.end]
+    times = np.unique(np.concatenate([kept, *reported, edges]))
     # Without a sample in a gap, a clause would be judged across it.
     long = np.diff(times) > max_gap
     return np.unique(np.concatenate([times, (times[:-1] + times[1:])[long] / 2]))
@@ -189,6 +192,12 @@ def _poses(
     half = pose.yaw / 2
     turned = pose.rotation or (float(np.cos(half)), 0.0, 0.0, float(np.sin(half)))
     return np.tile(pose.position, (len(times), 1)), np.tile(turned, (len(times), 1))
+
+
+def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
+    """Return the last reported truth at each time; NaN before the first report."""
+    rows = np.searchsorted(truths.times, times, side="right") - 1
+    return np.where(rows < 0, np.nan, truths.values[np.maximum(rows, 0)])
 
 
 def _grips(

@@ -140,6 +140,10 @@ class Evidence(Protocol):
         """Return the value of a configuration of an element, as set up in the world."""
         ...
 
+    def truth(self, topic: str) -> FloatArray:
+        """Return 1 where the last message on a topic of a log is true, -1 where it is false, shape (n,)."""
+        ...
+
     @property
     def is_logged(self) -> bool:
         """Whether the samples are observations of a log. Otherwise they are the true states of a simulation."""

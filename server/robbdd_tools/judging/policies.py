@@ -69,6 +69,8 @@ class Judge:
         fails.
         """
         rule = self.policy.rule
+        if rule.kind == "topic" and evidence.is_logged:
+            return _reported(rule.name, evidence)
         if rule.kind == "topic":
             raise Unobserved(f"its verdicts come from the ROS topic '{rule.name}', which a simulation does not have")
         streams = self._streams(evidence)
@@ -119,6 +121,14 @@ class Observed:
     def stamps(self, name: str) -> FloatArray:
         """Return the time at which each of these positions was observed, s, shape (n,). Raises ``KeyError``."""
         return self._streams[name].stamps
+
+
+def _reported(topic: str, evidence: Evidence) -> FloatArray:
+    """Return the verdicts of a topic of a log as margins of ±1, shape (n,). Raises ``Unobserved``."""
+    try:
+        return evidence.truth(topic)
+    except KeyError:
+        raise Unobserved(f"its verdicts come from the ROS topic '{topic}', which the log does not have") from None
 
 
 def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:

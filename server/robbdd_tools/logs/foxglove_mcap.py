@@ -61,8 +61,7 @@ def read_foxglove(path: Path) -> LogContents:
 
 def contents_of(builder: TrackBuilder, texts: list[tuple[int, str, str]]) -> LogContents:
     """Return the contents of a log with a single clock. ``texts`` are times (ns), topics and texts."""
-    stamps = [time for time in (builder.first, builder.last) if time is not None]
-    stamps += [time for time, _, _ in texts]
+    stamps = [*builder.bounds(), *(time for time, _, _ in texts)]
     begin, end = min(stamps, default=0), max(stamps, default=0)
     found = tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in sorted(texts))
     return LogContents(builder.tracks(begin), found, (end - begin) / 1e9)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 
-Row = tuple[int, float, float, float, float, float, float, float]
-"""Time (ns), position (m) and orientation (w, x, y, z) of a frame."""
+MIN_LENGTH = 0.5
+"""Length from which four numbers are a quaternion that is only not normalised."""
 
 
 class UnreadableLog(RobbddError):
@@ -49,11 +50,20 @@ class TextStamp:
 
 
 @dataclass(frozen=True, slots=True)
+class Truths:
+    """The reports of a topic on a clause: from each of ``times`` (n,) s on, true (1), false (-1) or unknown (NaN)."""
+
+    times: FloatArray
+    values: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class LogContents:
     """Everything of a log that clauses are judged on.
 
     - ``tracks``: maps a frame to its poses.
     - ``texts``: the texts on all topics, in order of time.
+    - ``truths``: maps a topic of truth values to them.
     - ``end``: the time of the last message, s since the first.
     - ``remarks``: sentences on how the log was read, for example a clock offset that was corrected.
     """
@@ -62,15 +72,14 @@ class LogContents:
     texts: tuple[TextStamp, ...] = ()
     end: float = 0.0
     remarks: tuple[str, ...] = ()
+    truths: Mapping[str, Truths] = field(default_factory=dict[str, Truths])
 
 
 @dataclass
 class TrackBuilder:
     """Collects the poses of frames in any order of time. Times are in ns of the log's clock."""
 
-    _rows: dict[str, list[Row]] = field(default_factory=dict[str, list[Row]])
-    _parents: dict[str, str] = field(default_factory=dict[str, str])
-    _static: dict[str, bool] = field(default_factory=dict[str, bool])
+    _frames: dict[str, _Poses] = field(default_factory=dict[str, "_Poses"])
 
     def add(
         self,
@@ -86,21 +95,20 @@ class TrackBuilder:
 
         Raises ``UnreadableLog`` if the frame had another parent before.
         """
-        known = self._parents.setdefault(frame, parent)
-        if known != parent:
-            raise UnreadableLog(f"frame '{frame}' has two parents, '{known}' and '{parent}': publish one of them only")
-        self._static[frame] = self._static.get(frame, True) and static
-        self._rows.setdefault(frame, []).append((time, *position, *orientation))
+        poses = self._frames.get(frame)
+        if poses is None:
+            poses = self._frames[frame] = _Poses(parent)
+        if poses.parent != parent:
+            words = f"frame '{frame}' has two parents, '{poses.parent}' and '{parent}'"
+            raise UnreadableLog(f"{words}: publish one of them only")
+        poses.static = poses.static and static
+        poses.times.append(time)
+        poses.values.extend((*position, *orientation))
 
-    @property
-    def first(self) -> int | None:
-        """The time of the earliest pose that is not static, ns; ``None`` if there is none."""
-        return min((rows[0][0] for frame, rows in self._sorted() if not self._static[frame]), default=None)
-
-    @property
-    def last(self) -> int | None:
-        """The time of the latest pose that is not static, ns; ``None`` if there is none."""
-        return max((rows[-1][0] for frame, rows in self._sorted() if not self._static[frame]), default=None)
+    def bounds(self) -> list[int]:
+        """Return the times of the earliest and the latest pose that is not static, ns; empty if there is none."""
+        times = [time for one in self._frames.values() if not one.static for time in (min(one.times), max(one.times))]
+        return [min(times), max(times)] if times else []
 
     def tracks(self, begin: int) -> dict[str, Track]:
         """Return the tracks, with times in s since ``begin`` (ns).
@@ -108,26 +116,28 @@ class TrackBuilder:
         Of several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion has no
         length, are left out.
         """
-        found = {frame: self._track(frame, rows, begin) for frame, rows in self._sorted()}
+        found = {frame: poses.track(begin) for frame, poses in self._frames.items()}
         return {frame: track for frame, track in found.items() if len(track.times)}
 
-    def _sorted(self) -> list[tuple[str, list[Row]]]:
-        # Sorting is stable: of equal times, the pose that was recorded last stays last.
-        return [(frame, sorted(rows, key=lambda row: row[0])) for frame, rows in self._rows.items()]
 
-    def _track(self, frame: str, rows: list[Row], begin: int) -> Track:
-        stamps = np.array([row[0] for row in rows], dtype=np.int64)
-        values = np.array([row[1:] for row in rows], dtype=float)
+@dataclass
+class _Poses:
+    """The poses of one frame: times (ns), and for each position (m) and orientation (w, x, y, z)."""
+
+    parent: str
+    static: bool = True
+    times: array[int] = field(default_factory=lambda: array("q"))
+    values: array[float] = field(default_factory=lambda: array("d"))
+
+    def track(self, begin: int) -> Track:
+        stamps, values = np.array(self.times, dtype=np.int64), np.array(self.values).reshape(-1, 7)
+        # The sort is stable: of equal times, the pose that was recorded last stays last.
+        order = np.argsort(stamps, kind="stable")
+        stamps, values = stamps[order], values[order]
         length = np.linalg.norm(values[:, 3:], axis=1)
-        usable = np.isfinite(values).all(axis=1) & (length > 0.5)
-        usable[:-1] &= (stamps[1:] != stamps[:-1]) | ~usable[1:]
-        if self._static[frame]:
-            usable &= np.arange(len(rows)) == (np.flatnonzero(usable)[-1] if usable.any() else -1)
+        usable = np.isfinite(values).all(axis=1) & (length > MIN_LENGTH)
         stamps, values, length = stamps[usable], values[usable], length[usable]
-        return Track(
-            self._parents[frame],
-            (stamps - begin) / 1e9,
-            values[:, :3],
-            values[:, 3:] / length[:, None],
-            self._static[frame],
-        )
+        last = np.ones(len(stamps), bool)
+        last[:-1] = False if self.static else stamps[1:] != stamps[:-1]
+        turns = values[last, 3:] / length[last, None]
+        return Track(self.parent, (stamps[last] - begin) / 1e9, values[last, :3], turns, self.static)

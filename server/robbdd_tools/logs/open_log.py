@@ -35,7 +35,7 @@ def read_log(path: Path) -> LogContents:
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:
-    if not found.tracks and not found.texts:
+    if not (found.tracks or found.texts or found.truths):
         raise UnreadableLog(
             f"{path} contains no message that can be judged: record transforms, poses, odometry or texts of events"
         )

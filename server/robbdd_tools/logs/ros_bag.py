@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
+from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, Truths, UnreadableLog
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,6 +52,7 @@ class _Contents:
     def __init__(self) -> None:
         self.builder = TrackBuilder()
         self.texts: list[tuple[int, str, str]] = []
+        self.truths: dict[str, list[tuple[int, float]]] = {}
         self.offsets: list[int] = []
 
     def transform(self, topic: str, received: int, message: Any) -> None:
@@ -71,13 +73,23 @@ class _Contents:
     def text(self, topic: str, received: int, message: Any) -> None:
         self.texts.append((received, topic, str(message.data)))
 
+    def truth(self, topic: str, received: int, message: Any) -> None:
+        self.truths.setdefault(topic, []).append((received, 1.0 if message.data else -1.0))
+
+    def trinary(self, topic: str, received: int, message: Any) -> None:
+        # The type defines its own values; a stamped one contains it.
+        value = getattr(message, "trinary", message)
+        known = {int(value.TRUE): 1.0, int(value.FALSE): -1.0}
+        self.truths.setdefault(topic, []).append((received, known.get(int(value.value), math.nan)))
+
     def finish(self) -> LogContents:
         offset = int(np.median(self.offsets)) if self.offsets else 0
         different = abs(offset) > MIN_OFFSET * 1e9
         shift = offset if different else 0
         texts = sorted((received - shift, topic, text) for received, topic, text in self.texts)
-        stamps = [time for time in (self.builder.first, self.builder.last) if time is not None]
-        stamps += [time for time, _, _ in texts]
+        truths = {topic: sorted((time - shift, one) for time, one in found) for topic, found in self.truths.items()}
+        stamps = [*self.builder.bounds(), *(time for time, _, _ in texts)]
+        stamps += [time for found in truths.values() for time, _ in found]
         begin, end = min(stamps, default=0), max(stamps, default=0)
         remarks = ("poses are stamped by their headers, texts by their reception",)
         if different:
@@ -87,6 +99,7 @@ class _Contents:
             tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in texts),
             (end - begin) / 1e9,
             remarks,
+            {topic: _truths(found, begin) for topic, found in truths.items()},
         )
 
     def _stamped(self, name: str, received: int, message: Any, pose: Any) -> None:
@@ -105,8 +118,16 @@ READERS: dict[str, Callable[[_Contents, str, int, Any], None]] = {
     "geometry_msgs/msg/PoseStamped": _Contents.pose,
     "nav_msgs/msg/Odometry": _Contents.odometry,
     "std_msgs/msg/String": _Contents.text,
+    "std_msgs/msg/Bool": _Contents.truth,
+    "bdd_ros2_interfaces/msg/Trinary": _Contents.trinary,
+    "bdd_ros2_interfaces/msg/TrinaryStamped": _Contents.trinary,
 }
 """Types of messages → how they are read."""
+
+
+def _truths(found: list[tuple[int, float]], begin: int) -> Truths:
+    times = np.array([time - begin for time, _ in found]) / 1e9
+    return Truths(times, np.array([value for _, value in found]))
 
 
 def _stamp(stamp: Any) -> int:

@@ -154,6 +154,17 @@ class WindowEvidence:
         """Return the value of a configuration as it was read from the simulated world. Raises ``KeyError``."""
         return self._of_pair(self.trace.settings, target, name)
 
+    def truth(self, topic: str) -> FloatArray:
+        """Return 1 where the last message on a topic of the log is true, -1 where it is false, shape (n,).
+
+        Raises ``KeyError``, and ``Unobserved`` if the truth is not known throughout the window.
+        """
+        values = self.trace.truths[topic][self._rows]
+        missing = np.isnan(values)
+        if missing.any():
+            raise Unobserved(f"the topic '{topic}' reports nothing known at {self.times[int(np.argmax(missing))]:.2f} s")
+        return values
+
     @property
     def is_logged(self) -> bool:
         """Whether the samples are observations of a log."""

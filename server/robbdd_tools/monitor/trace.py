@@ -66,6 +66,7 @@ class Trace:
     - ``pending``: the events that could occur again if the execution continued.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
       values, which are NaN.
+    - ``truths``: maps a topic of a log to 1 where its last message is true, -1 where it is false, and NaN (n,).
     """
 
     names: tuple[str, ...]
@@ -89,6 +90,7 @@ class Trace:
     executions: Mapping[str, int] = field(default_factory=dict[str, int])
     pending: tuple[str, ...] = ()
     log: str = ""
+    truths: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
 
     @property
     def end(self) -> float:
