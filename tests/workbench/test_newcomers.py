@@ -2,7 +2,8 @@
 
 Each has its own traits: words inside names, events in several styles, nested conditions (``kitchen``); ``for all`` and
 sets of places (``ewaste``); several arms and namespaces, and faults (``handover``); several stories (``stories``); the
-paper's form with an event between the behaviour's ends (``printed``); JSON-LD in three files as it is published.
+paper's form with an event between the behaviour's ends (``printed``) and its criteria (``criteria``); JSON-LD in three
+files as it is published.
 """
 
 from __future__ import annotations
@@ -75,3 +76,46 @@ def test_the_warnings_of_a_model_say_what_is_wrong_where(folder: Path) -> None:
         ("handover.bdd", 51, "setting"),
         ("cell.scene", 3, "no-model"),
     }
+
+
+@pytest.mark.physics
+def test_the_criteria_of_the_paper_are_judged_and_the_text_among_them_is_known_before(folder: Path) -> None:
+    model = robbdd.load(folder / "criteria.bdd")
+    (found,) = [one for one in model.diagnostics if one.severity < robbdd.Severity.INFORMATION]
+    assert (found.code, found.place.line) == ("no-evaluator", 55)
+    with Plan.of(model, Selection()).run(seed=1, keeping=Keeping(keep=False)) as run:
+        picked, _, placed, _ = ([clause.verdict for clause in result.clauses] for result in run)
+    assert picked == ["holds"] * 4
+    assert placed == [*["holds"] * 4, "unknown"]
+
+
+PLACED = """import "cell.scene"
+ns sim = 'https://example.org/sim/'
+scene inst (ns=sim) placed {
+    scene: <cell>
+    kgraph (ns=sim) poses {
+        body room { frame origin { } }
+        body foot {
+            frame base { pose p { wrt: <room.origin> xyz: (3, 2, 0) m orientation: quat { xyzw: (0, 0, 0, 1) } } }
+        }
+    }
+    agn <arms.spare_ur10> { model spare as mjcf { catalog "ur10" map body <poses.foot> to "base" } }
+}
+"""
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("placed", [False, True])
+def test_a_bystander_is_left_out_and_named_once_unless_a_scenex_places_it(
+    placed: bool, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "placed.scenex").write_text(PLACED, encoding="utf-8")
+    scenex = ["--scenex", str(folder / "placed.scenex")] if placed else []
+    where = ["--where", "what = 'blueCube' and dest = 'left_zone'"]
+    main(["run", str(folder / "handover.bdd"), "--no-store", *where, *scenex])
+    captured = capsys.readouterr()
+    (note,) = [
+        line for line in (captured.out + captured.err).splitlines() if "not simulated" in line and "panda" not in line
+    ]
+    assert "a:coffee_machine" in note
+    assert ("b:spare_ur10" in note) is not placed
