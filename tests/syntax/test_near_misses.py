@@ -52,6 +52,16 @@ def changed(old: str, new: str) -> str:
         (changed("    var part\n", "    # the part\n    var part\n"), "#", "a comment starts with '//'"),
         (changed("    var part\n", "    /* the part */\n    var part\n"), "/*", "a comment starts with '//'"),
         (changed("Scenario bench-to-tray", "Scenario: bench-to-tray"), ":", "no ':' is allowed before the name"),
+        (
+            changed(IN_TRAY, "in-tray: holds(isCorrect(<goal>), after <place-end>)"),
+            "isCorrect",
+            "the language has no such predicate: write 'pred(",
+        ),
+        (
+            changed(IN_TRAY, "isCorrect(<goal>) after <place-end>"),
+            "(",
+            "the language has no such predicate: write 'pred(",
+        ),
         (changed(IN_TRAY, f"{IN_TRAY}\n    var late"), "late", "variables are declared before 'Given:'"),
         (changed(IN_TRAY, f"{IN_TRAY}\n    set var late"), "var", "variables are declared before 'Given:'"),
         (

@@ -162,7 +162,9 @@ class WindowEvidence:
         values = self.trace.truths[topic][self._rows]
         missing = np.isnan(values)
         if missing.any():
-            raise Unobserved(f"the topic '{topic}' reports nothing known at {self.times[int(np.argmax(missing))]:.2f} s")
+            raise Unobserved(
+                f"the topic '{topic}' reports nothing known at {self.times[int(np.argmax(missing))]:.2f} s"
+            )
         return values
 
     @property

@@ -39,6 +39,8 @@ def _as_set(before: re.Match[str]) -> SyntaxFix:
     return SyntaxFix(Span(before.start("var"), before.start("var")), "set ")
 
 
+_OWN_PREDICATE = """the language has no such predicate: write 'pred("{x} is …", x=<variable>)', \
+which a policy or a step function judges"""
 _NEAR_MISSES = (
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
@@ -63,6 +65,8 @@ _NEAR_MISSES = (
     NearMiss(r"\bnot\s+\Z", _NAME, "'not' and its clause need parentheses: '( not name: holds(…) )'", ":"),
     NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
+    NearMiss(r"", rf"(?!not\b|pred\b|holds\b){_NAME}\s*(?=\(\s*<)", _OWN_PREDICATE, "<"),
+    NearMiss(rf"(?<![\w\-.<])(?!(?:Given|When|Then)\b){_NAME}\s*\Z", r"\((?=\s*<)", _OWN_PREDICATE, ":"),
     NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),
     NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
     NearMiss(r"", r";", "no line ends with ';': remove it", fix=lambda _: ""),
