@@ -1,12 +1,13 @@
 // One code-server on loopback with a separate profile and process group.
 import { spawn } from "node:child_process";
+import { createHash } from "node:crypto";
 import { once } from "node:events";
-import { createWriteStream } from "node:fs";
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { createWriteStream, existsSync } from "node:fs";
+import { cp, mkdir, readFile, rename, writeFile } from "node:fs/promises";
 import { createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
-import { codeServerEntry } from "./checkout.mjs";
+import { CACHE, codeServerEntry } from "./checkout.mjs";
 import { PATIENCE } from "./patience.mjs";
 
 const STOP_LIMIT = 5_000;
@@ -129,13 +130,24 @@ export class CodeServer {
     await writeFile(join(this.#state, "config.yaml"), config);
   }
 
+  /** Install an extension. Sessions copy one installation: each of them would take seconds. */
   async #installExtension(vsix) {
+    const digest = createHash("sha256").update(await readFile(vsix)).digest("hex").slice(0, 16);
+    const installed = join(CACHE, `extensions-${digest}`);
+    const own = join(this.#state, "extensions");
+    if (existsSync(installed)) {
+      await cp(installed, own, { recursive: true });
+      return;
+    }
     const install = this.#spawn(["--install-extension", vsix]);
     const [code] = await once(install, "exit");
     groups.delete(install.pid);
     if (code !== 0) {
       throw new Error(`${vsix} could not be installed:\n${await readFile(this.log, "utf8")}`);
     }
+    const copied = `${installed}-${process.pid}`;
+    await cp(own, copied, { recursive: true });
+    await rename(copied, installed);
   }
 
   #spawn(args) {
