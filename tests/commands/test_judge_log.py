@@ -7,6 +7,7 @@ import math
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -229,7 +230,18 @@ def test_the_result_is_a_stored_run_that_is_judged_again_and_not_simulated(model
     done = robbdd(folder, "judge", str(bag), "pickplace.bdd", *ONE)
     assert done.returncode == 0, done.stderr
     assert "kept as run 1" in done.stderr
-    assert "1 hold" in robbdd(folder, "runs").stdout or "log drive" in robbdd(folder, "runs").stdout
+    listed = robbdd(folder, "runs").stdout
+    assert "1 hold" in listed
+    shown = subprocess.run(
+        [sys.executable, "-P", "-m", "robbdd_tools.agent.show_trace", str(folder / ".robbdd" / "runs" / "1"), "0"],
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+    )
+    drawn = json.loads(shown.stdout)
+    names = [body["name"] for body in drawn["bodies"]]
+    assert names == ["env:bin_left", "env:bin_right", "env:cube0", "env:table"]
+    assert drawn["bodies"][2]["position"] == pytest.approx([0.45, 0.0, 0.825], abs=1e-3)
     again = robbdd(folder, "judge", "1", "pickplace.bdd")
     assert again.returncode == 0, again.stderr
     refused = robbdd(folder, "replay", "1")

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 
 from robbdd_tools.agent.channel import Reports
-from robbdd_tools.agent.log_evidence import evidence_of
+from robbdd_tools.agent.log_evidence import LogEvidence, evidence_of
 from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
@@ -37,6 +38,7 @@ from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence
 from robbdd_tools.protocol.log_request import LOG_REQUEST, LogRequest
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.messages import (
+    ClauseJudged,
     LogLine,
     RunFinished,
     RunMessage,
@@ -50,7 +52,9 @@ from robbdd_tools.protocol.run_folder import curves_file, trace_file
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import write_trace
+from robbdd_tools.world.composition import compile_objects
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.log_views import observed_views, verdict_views
 
 
 def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator[RunMessage]:
@@ -70,18 +74,20 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
     for remark in found.remarks:
         yield LogLine("info", remark)
     faults: set[str] = set()
+    verdicts: list[ClauseJudged] = []
     for clause in spec.clauses:
         verdict = _verdict(clause, found.evidence, spec)
         if verdict.fault is not None and verdict.fault.id not in faults:
             faults.add(verdict.fault.id)
             yield UserCodeFailed(0, verdict.fault)
-        yield judged(0, clause.line, verdict)
+        verdicts.append(judged(0, clause.line, verdict))
+        yield verdicts[-1]
         if clause.role != "when":
             trace, regions = found.evidence.trace, found.evidence.regions
             ranges = margin_ranges(0, clause_of(clause, spec), clause, spec, trace, regions)
             if ranges is not None:
                 yield ranges
-    _keep(folder, spec, found.evidence)
+    _keep(folder, spec, found, verdicts)
     finish_output()
     yield ScenarioFinished(0, round(found.evidence.trace.end, 6), perf_counter() - began, 0.0)
     yield RunFinished(True)
@@ -114,18 +120,18 @@ def _reported(call: BehaviourCall, clause: ClauseSpec, trace: Trace, spec: Scena
     return Verdict(Outcome.HOLDS, at=min(times), reason=f"the log reports '{last}'")
 
 
-def _keep(folder: Path, spec: ScenarioSpec, evidence: Evidence) -> None:
-    trace = evidence.trace
-    views = ((stamp.time, "/events", {"name": stamp.name, "time": stamp.time}) for stamp in trace.events)
-    write_trace(trace_file(folder, 0), evidence, views)
-    found: dict[int, tuple[Curve, ...]] = {}
+def _keep(folder: Path, spec: ScenarioSpec, found: LogEvidence, verdicts: Sequence[ClauseJudged]) -> None:
+    evidence, trace = found.evidence, found.evidence.trace
+    seen = observed_views(compile_objects(found.cast), evidence.regions, trace)
+    write_trace(trace_file(folder, 0), evidence, chain(seen, verdict_views(spec, verdicts, trace.end)))
+    by_line: dict[int, tuple[Curve, ...]] = {}
     for clause in spec.clauses:
         statement = statement_of(clause)
         if isinstance(statement, BehaviourCall):
-            found[clause.line] = behaviour_curves(statement, trace, spec.events, spec.node, iteration_of(clause))
+            by_line[clause.line] = behaviour_curves(statement, trace, spec.events, spec.node, iteration_of(clause))
         elif clause.role != "when":
-            found[clause.line] = tuple(curves(clause_of(clause, spec), trace, evidence.regions))
-    write_curves(curves_file(folder, 0), (spec.variant, spec.variation), found, trace)
+            by_line[clause.line] = tuple(curves(clause_of(clause, spec), trace, evidence.regions))
+    write_curves(curves_file(folder, 0), (spec.variant, spec.variation), by_line, trace)
 
 
 def _main() -> int:

@@ -36,6 +36,7 @@ class LogEvidence:
 
     evidence: Evidence
     remarks: tuple[str, ...]
+    cast: Cast
 
 
 def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) -> LogEvidence:
@@ -77,7 +78,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
         immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
     )
-    return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)))
+    return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 
 
 def _frames(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import cos, sin
 from pathlib import Path
@@ -74,6 +74,12 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
     arranged = arrange(scene, cast, base, np.random.default_rng(seed))
     model = _compile(cast, bases, arranged.poses)
     return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
+
+
+def compile_objects(cast: Cast) -> Any:
+    """Return a compiled model of the objects alone, all at the origin, from which they can be drawn."""
+    alone = replace(cast, agents={}, staging=None)
+    return _compile(alone, {}, {name: Pose((0.0, 0.0, 0.0)) for name in cast.objects})
 
 
 def _seed_of(scene: SceneSpec, seed: int) -> int:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from robbdd_tools.world.drawn_shapes import DIGITS, color, geometry, shown_geoms
 from robbdd_tools.world.engine import mujoco
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.protocol.messages import ClauseJudged
     from robbdd_tools.protocol.specs import ScenarioSpec
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 
 EVERY = 4
 """Samples between two pictures: about 16 per second are enough for display; the exact trace has all samples."""
+PERIOD = 1 / 16
+"""Seconds between two pictures of observations."""
 WORLD = "world"
 
 
@@ -44,6 +49,43 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
         yield time, "/tf", {"transforms": _frames(time, [names[body] for body in shown], places, turns)}
         if simulation.robots:
             yield time, "/joints", _joints(simulation, states[row])
+
+
+def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]:
+    """Yield the views of a trace of observations. ``model`` is a compiled model that has a body for each object.
+
+    An object is drawn where it was observed last; one that was never observed is left out.
+    """
+    for stamp in trace.events:
+        yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
+    bodies = {str(model.body(body).name): body for body in range(1, model.nbody)}
+    seen = [
+        name for name in trace.names if name in bodies and np.isfinite(trace.positions[:, trace.column(name)]).any()
+    ]
+    drawn = {bodies[name]: name for name in seen}
+    known = {workspace: [box for box in boxes if box[0] in seen] for workspace, boxes in regions.items()}
+    yield 0.0, "/geometry", geometry(model, drawn, known)
+    solids = {name: shapes for body, name in drawn.items() if (shapes := _shapes(model, body))}
+    yield 0.0, "/scene", {"deletions": [], "entities": [_entity(name, solids[name]) for name in solids]}
+    if not seen:
+        return
+    columns = [trace.column(name) for name in seen]
+    places, turns = _last_known(trace.positions[:, columns]), _last_known(trace.orientations[:, columns])
+    shown = -np.inf
+    for row, time in enumerate(trace.times.tolist()):
+        if time >= shown + PERIOD or row == len(trace.times) - 1:
+            shown = time
+            yield time, "/tf", {"transforms": _frames(time, seen, places[row].tolist(), turns[row].tolist())}
+
+
+def _last_known(values: FloatArray) -> FloatArray:
+    """Replace each missing value (n, m, k) by the last one before it, or else by the first one after it."""
+    missing = np.isnan(values).any(axis=2)
+    rows = np.where(missing, -1, np.arange(len(values))[:, None])
+    rows = np.maximum.accumulate(rows, axis=0)
+    first = np.argmin(missing, axis=0)
+    rows = np.where(rows < 0, first, rows)
+    return np.take_along_axis(values, rows[:, :, None], axis=0).round(DIGITS)
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
