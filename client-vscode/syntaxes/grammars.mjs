@@ -71,10 +71,28 @@ const predicates = phrases(
   "can reach",
   "does not drop",
   "moves safely",
+  "moves slower than",
+  "is tilted less than",
   "does not collide",
 );
 
+const quantity = {
+  match: String.raw`${NUMBER}\s*(m/s|deg/s|deg|rad|mm|cm|ms|kg|m|s|N|%)(?![\p{L}\p{N}_/-])`,
+  captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
+};
+
+// The last word of the phrase is behind a quantity or a variable.
+const distance = {
+  begin: String.raw`(?<![\p{L}\p{N}_-])(is\s+(?:nearer|farther)\s+than)(?![\p{L}\p{N}_-])`,
+  beginCaptures: { 1: { name: `${PHRASE}.predicate.robbdd` } },
+  end: String.raw`(?<![\p{L}\p{N}_.-])(to|from)(?![\p{L}\p{N}_-])|(?=[,)])`,
+  endCaptures: { 1: { name: `${PHRASE}.predicate.robbdd` } },
+  patterns: [quantity, COMMON],
+};
+
 const bdd = grammar("RobBDD", "source.robbdd", [
+  quantity,
+  distance,
   COMMON,
   declaration(DECLARE, "entity.name.type.template", "Scenario Template"),
   declaration(DECLARE, "entity.name.type.story", "User Story"),

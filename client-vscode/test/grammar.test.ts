@@ -59,6 +59,18 @@ async function expectTokens(scope: string, text: string, ...expected: string[]):
   }
 }
 
+test("quantities, conditions and windows have their colours", async () => {
+  const text = "c: holds(<r> moves slower than 0.25 m/s whenever <r> is nearer than 30cm to <b>, within 8 seconds after <e>)";
+  await expectTokens(
+    "source.robbdd",
+    text,
+    "m/s → keyword.other.unit",
+    "cm → keyword.other.unit",
+    "whenever → keyword.other.time",
+    "within → keyword.other.time",
+  );
+});
+
 test("a feature has its tags, headings, steps, names and times", async () => {
   const text = `@story=https:;;x.org
   Szenario: t:fetch -- 1
@@ -304,10 +316,10 @@ for (const kind of ["predicates", "behaviours"] as const) {
   const scope = kind === "predicates" ? "support.function.predicate" : "support.function.behaviour";
   for (const phrase of phrasesOf(kind)) {
     test(`the words of "${phrase}" are coloured as one of the ${kind}`, async () => {
-      const text = phrase.replaceAll("$name", "speed");
+      const text = phrase.replaceAll("$name", "speed").replace(/#\w+/, "5 m");
       const found = await tokens("source.robbdd", text);
-      // What is neither a reference nor a name nor `= …` are the words of the phrase.
-      const words = phrase.split(/<[^>]*>|\$\w+|=/).map((part) => part.trim());
+      // What is neither a reference nor a name nor a quantity nor `= …` are the words of the phrase.
+      const words = phrase.split(/<[^>]*>|[$#]\w+|=/).map((part) => part.trim());
       for (const word of words.filter((part) => part !== "")) {
         assert.ok(found.includes(`${word} → ${scope}`), `missing "${word}" among\n  ${found.join("\n  ")}`);
       }

@@ -45,7 +45,7 @@ def test_a_name_is_claimed_once() -> None:
 @every_sentence
 def test_phrase_and_sentence_name_each_slot_once(word: Predicate | Behaviour) -> None:
     slots = sorted(slot.name for slot in word.slots)
-    assert sorted(re.findall(r"<(\w+)>|\$(\w+)", word.phrase)) == sorted(
+    assert sorted(re.findall(r"<(\w+)>|[$#](\w+)", word.phrase)) == sorted(
         (name, "") if f"<{name}>" in word.phrase else ("", name) for name in slots
     )
     assert sorted(re.findall(r"\{(\w+)\}", word.sentence)) == slots

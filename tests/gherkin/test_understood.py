@@ -59,6 +59,11 @@ def guarded(time: TimeConstraint) -> Clause:
     return Fluent(NAME, "then", "moves-safely", {"agent": THING}, time, condition)
 
 
+def limited(quantity: str, time: TimeConstraint) -> Clause:
+    condition = Condition(NAME, "is-nearer-than", {"one": THING, "distance": "30 cm", "other": PLACE})
+    return Fluent(NAME, "then", "moves-slower-than", {"agent": THING, "limit": quantity}, time, condition)
+
+
 def guarded_text(text: str, time: TimeConstraint) -> Clause:
     condition = Condition(NAME, "moves-safely", {"agent": THING})
     return TextFluent(NAME, "then", text, {}, time, condition)
@@ -81,6 +86,7 @@ SIMPLE: st.SearchStrategy[Clause] = (
     st.builds(located, TIMES)
     | st.builds(told, TEXT, TIMES)
     | st.builds(guarded, TIMES)
+    | st.builds(limited, st.sampled_from(["0.25 m/s", "1e-05 m/s"]), TIMES)
     | st.builds(guarded_text, st.sampled_from(["the lamp is on", 'it "is" on']), TIMES)
 )
 

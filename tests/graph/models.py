@@ -8,7 +8,7 @@ EVERYTHING = (
 ns bdd = 'https://example.org/taken/'
 ns _low = 'https://example.org/low/'
 Event (ns=bdd) elsewhere
-const set (ns=other_names) mixed { 3, -2.5, 1e21, "a \"word\" <&> {x}", 'Gruß', 'two
+const set (ns=other_names) mixed { 3, 20 %, -2.5, 1e21, "a \"word\" <&> {x}", 'Gruß', 'two
 lines', <places.bench_ws>, 3 }
 Scenario Template (ns=t) fetch {
     duration: from <start> until <end>
@@ -17,6 +17,7 @@ Scenario Template (ns=t) fetch {
     var robot
     var goal
     var speed
+    var near
     set var goals
     Given:
         (
@@ -25,6 +26,10 @@ Scenario Template (ns=t) fetch {
             and ( not ( reach: holds(<robot> can reach <part>, after <start>)
                         and drop: holds(<robot> does not drop <part>, from <start> until <end>) ) )
             and config: holds(<robot> has config speed = <speed>, before <start>)
+            and slow: holds(<robot> moves slower than 0.25 m/s whenever <robot> is nearer than <near> to <goal>,
+                            before <start>)
+            and apart: holds(<part> is farther than 3e-1 m from <robot>, before <start>)
+            and level: holds(<part> is tilted less than 10deg, before <start>)
             and text: holds(pred('{p} & {r}', p=<part>, r=<robot>), 1 seconds after <end>)
         )
     When:
@@ -72,11 +77,12 @@ User Story (ns=other_names) zz-first {
             When: event <end> occurs
             Then: "free text" after <end>
             variation:
-            | <fetch.part> | <fetch.robot> | <fetch.goal> | <fetch.speed> | <fetch.goals> |
+            | <fetch.part> | <fetch.robot> | <fetch.goal> | <fetch.speed> | <fetch.near> | <fetch.goals> |
             |---|
-            | <parts.nut> | <arms.ur10> | <places.tray_ws> | 0.1 | ws set <places> |
-            | <parts.bolt> | <arms.panda> | <places.bench_ws> | "fast" | { <places.tray_ws>, <places.bench_ws> } |
-            | <washers.washer1> | <arms.panda> | <places.bench_ws> | 2 | { } |
+            | <parts.nut> | <arms.ur10> | <places.tray_ws> | 0.1 | 30 cm | ws set <places> |
+            | <parts.bolt> | <arms.panda> | <places.bench_ws> | "fast" | 0.3 m |
+              { <places.tray_ws>, <places.bench_ws> } |
+            | <washers.washer1> | <arms.panda> | <places.bench_ws> | 2 | 250 mm | { } |
         }
         Scenario product {
             template: <sort>
@@ -106,6 +112,7 @@ User Story (ns=t) aa-second {
                 var <fetch.robot>: agn set <arms>
                 var <fetch.goal>: ws set <places>
                 var <fetch.speed>: { 1, 1.0, "1" }
+                var <fetch.near>: { 30 cm, 0.3 m, -.5e-1 m }
                 set var <fetch.goals>: select 2 permutations from <places>
         }
 }

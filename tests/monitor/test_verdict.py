@@ -97,6 +97,12 @@ def test_the_verdict_that_decides_is_returned() -> None:
     assert disjunction([high, of(1.0), of(2.0)]).robustness == 2.0
 
 
+def test_margins_of_several_units_are_compared_in_si_units() -> None:
+    slow, near = Verdict(Outcome.HOLDS, 0.3, "m/s"), Verdict(Outcome.HOLDS, 20.0, "cm")
+    assert conjunction([slow, near]) is near
+    assert disjunction([slow, near]) is slow
+
+
 def test_margins_are_those_of_the_operands_that_have_one() -> None:
     holds = Verdict(Outcome.HOLDS)
     assert conjunction([holds, holds]) is holds

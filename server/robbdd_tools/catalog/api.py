@@ -32,15 +32,20 @@ class Kind(StrEnum):
     ANY = "element"
     NAME = "name"
     VALUE = "value"
+    QUANTITY = "quantity"
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One argument of a phrase: its name, its kinds, and the RDF property (CURIE) that carries it."""
+    """One argument of a phrase: its name, its kinds, and the RDF property (CURIE) that carries it.
+
+    ``dimension`` is what a quantity measures, such as ``length``; empty for other kinds.
+    """
 
     name: str
     kind: Kind
     property: str
+    dimension: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,17 +159,18 @@ Arguments = Mapping[str, str | tuple[str, ...]]
 """Slot name → name of the element (or names of the set's elements) that fills it."""
 
 Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
-"""Signed margin of the predicate at each sample, SI units, positive where it holds, shape (n,)."""
+"""Signed margin of the predicate at each sample, in the predicate's unit, positive where it holds, shape (n,)."""
 
 UnitChoice = Callable[[Evidence, Arguments], str]
-"""SI unit of a predicate's margin, if it depends on configuration."""
+"""Unit of a predicate's margin, if it depends on configuration or on the unit of a quantity in the clause."""
 
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
     """A predicate of fluents.
 
-    - ``phrase``: its form in a model. A slot is written in ``<…>`` (a reference), as ``$…`` (a bare name) or as words.
+    - ``phrase``: its form in a model. A slot is written in ``<…>`` (a reference), as ``$…`` (a bare name), as ``#…`` (a
+      number with a unit, or a variable) or as words.
     - ``aliases``: other forms with the same meaning and slots.
     - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
     - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.

@@ -132,6 +132,17 @@ def carriers_of(evidence: Evidence, target: str) -> list[str]:
         return [target]
 
 
+def distance_between(evidence: Evidence, one: str, other: str) -> FloatArray:
+    """Return the distance (m) of the positions of two elements at each sample, shape (n,).
+
+    A workspace is represented by the objects that carry it; the nearest counts.
+    """
+    import numpy as np
+
+    pairs = [(a, b) for a in carriers_of(evidence, one) for b in carriers_of(evidence, other)]
+    return np.min([np.linalg.norm(evidence.position(a) - evidence.position(b), axis=1) for a, b in pairs], axis=0)
+
+
 def path_length(positions: FloatArray) -> FloatArray:
     """Distance (m) travelled along positions (n, 3) up to each sample, shape (n,), starting at 0."""
     import numpy as np

@@ -39,6 +39,7 @@ from robbdd_tools.checks.number_range import number_range
 from robbdd_tools.checks.pose import pose
 from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.python_source import python_source
+from robbdd_tools.checks.quantity import quantity
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
@@ -70,6 +71,7 @@ DECLARATION_RULES = (
     not_in_scene,
     number_range,
     pose,
+    quantity,
     repeated_value,
     row_width,
     selection_size,

@@ -52,7 +52,7 @@ def clause_findings(site: GraphSite) -> Iterator[Diagnostic]:
                 yield from _sets(site, variant, clause)
             elif isinstance(clause, Fluent) and clause.predicate == "has-config":
                 yield from _configuration(site, variant, clause)
-            elif isinstance(clause, Fluent) and clause.predicate == "located-at":
+            elif isinstance(clause, Fluent) and clause.predicate == "located-at" and not _is_lenient(clause):
                 yield from _places(site, variant, clause)
 
 
@@ -111,6 +111,10 @@ def _configuration(site: GraphSite, variant: Variant, clause: Fluent) -> Iterato
         if not may_have(kind, model, name):
             message = not_configurable(site.local_name(element), model, kind, name)
             yield site.finding(clause.iri, SETTING, message)
+
+
+def _is_lenient(clause: Fluent) -> bool:
+    return clause.condition is not None or clause.time.some_time
 
 
 def _places(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagnostic]:

@@ -19,6 +19,7 @@ from robbdd_tools.names.types import Written, variable_key, written_elements
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -94,13 +95,23 @@ def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
 
 def _uses(site: Site) -> Iterator[_Use]:
     for clauses in clauses_of(site.placed.declaration):
+        lenient = set(_lenient(clauses.node))
         for phrase in clauses.phrases if site.whole(clauses.node) else ():
+            if phrase in lenient:
+                continue
             slots = dict(phrase.arguments)
             place, thing = slots.get("workspace"), slots.get("object")
             if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
                 variable = site.target(place)
                 if variable is not None and variable.kind is SymbolKind.SET_VARIABLE:
                     yield _Use(site, thing.path, place, variable_key(variable))
+
+
+def _lenient(node: tree.Node) -> Iterator[tree.Node]:
+    """Yield the phrases of clauses that each element may satisfy at another time."""
+    for clause in walk(node):
+        if isinstance(clause, tree.Fluent) and (clause.condition is not None or clause.time.some_time):
+            yield from filter(None, (clause.predicate, clause.condition))
 
 
 def _scenarios(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Scenario]:

@@ -45,6 +45,7 @@ _SAMPLES: Mapping[str, str] = {
     "NameText": "name",
     "TextLiteral": '"text"',
     "NumberLiteral": "1",
+    "QuantityLiteral": "1 m",
     "TableRule": "|---|",
     "ModuleNameText": "module",
 }

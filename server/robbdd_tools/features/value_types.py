@@ -25,7 +25,7 @@ _REFERENCE = r"<\s*([\w\-.]+)\s*>"
 _LINE = re.compile(rf"\bvar\s*{_REFERENCE}\s*:[^:|]*\Z")
 _SCENE = re.compile(rf"\bscene\s*:\s*{_REFERENCE}")
 _RULE = re.compile(r"\|(?:\s*-+\s*\|)+")
-_PIECE = re.compile(r"<(?P<slot>\w+)>|(?P<name>\$\w+)|(?P<sign>[^\s\w<$])|(?P<word>\w+)")
+_PIECE = re.compile(r"<(?P<slot>\w+)>|(?P<name>[$#]\w+)|(?P<sign>[^\s\w<$#])|(?P<word>\w+)")
 _ELEMENT_KINDS: Mapping[SymbolKind, str] = {
     SymbolKind.OBJECT: "object",
     SymbolKind.OBJECT_SET: "object",

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from robbdd_tools.base.quantity_units import si_factor
 from robbdd_tools.monitor.fault import Fault
 
 EMPTY_WINDOW = "its window contains no sample"
@@ -137,4 +138,4 @@ def _combine(verdicts: list[Verdict], decisive: Outcome, sign: float) -> Verdict
             return open_ones[0]
         deciding = verdicts
     measured = [verdict for verdict in deciding if verdict.robustness is not None]
-    return min(measured or deciding, key=lambda verdict: sign * (verdict.robustness or 0.0))
+    return min(measured or deciding, key=lambda verdict: sign * (verdict.robustness or 0.0) * si_factor(verdict.unit))

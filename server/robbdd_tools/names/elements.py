@@ -86,6 +86,8 @@ def element_of(site: Site, value: tree.Value) -> Element | None:
     match value:
         case tree.Number():
             return Element("number", str(value.value), ("", str(value.value)))
+        case tree.Quantity():
+            return Element("quantity", value.text, ("", value.text))
         case tree.Text():
             return Element("string", value.value, ("", f'"{value.value}"'))
         case tree.Ref():

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
-_ORDER = ("object", "workspace", "agent", "number", "string")
+_ORDER = ("object", "workspace", "agent", "number", "quantity", "string")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ Written = tree.Value | tree.Link | tree.ValueList | tree.Selection | tree.SetLis
 def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, Element]]:
     """Yield each element in a cell or a line, with the syntax node at which to report it."""
     match written:
-        case tree.Number() | tree.Text() | tree.Ref():
+        case tree.Number() | tree.Quantity() | tree.Text() | tree.Ref():
             element = element_of(site, written)
             if element is not None:
                 yield written, element

@@ -17,13 +17,14 @@ if TYPE_CHECKING:
 
 Kinds = frozenset[str]
 ELEMENTS: Kinds = frozenset({"object", "workspace", "agent"})
-ANYTHING: Kinds = ELEMENTS | {"number", "string"}
+ANYTHING: Kinds = ELEMENTS | {"number", "quantity", "string"}
 _SLOTS: Mapping[Kind, Kinds] = {
     Kind.OBJECT: frozenset({"object"}),
     Kind.OBJECT_SET: frozenset({"object"}),
     Kind.WORKSPACE: frozenset({"workspace"}),
     Kind.WORKSPACE_SET: frozenset({"workspace"}),
     Kind.AGENT: frozenset({"agent"}),
+    Kind.QUANTITY: frozenset({"quantity"}),
     Kind.ANY: ELEMENTS,
 }
 

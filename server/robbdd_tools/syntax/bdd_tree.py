@@ -8,7 +8,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robbdd_tools.syntax.scene_tree import Link, Name, NamespaceArgument, Node, Number, PythonAttribute, Ref, Text
+from robbdd_tools.syntax.scene_tree import (
+    Link,
+    Name,
+    NamespaceArgument,
+    Node,
+    Number,
+    PythonAttribute,
+    Quantity,
+    Ref,
+    Text,
+)
+from robbdd_tools.syntax.time_tree import During, TimeConstraint
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +38,7 @@ class Task(Node):
     name: Name
 
 
-Value = Ref | Number | Text
+Value = Ref | Quantity | Number | Text
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,36 +48,6 @@ class ConstantSet(Node):
     namespace: NamespaceArgument | None
     name: Name
     values: tuple[Value, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class During(Node):
-    """``[at some time] from <start> until <end>``."""
-
-    start: Ref
-    end: Ref
-    some_time: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Before(Node):
-    """``[[within] h seconds] before <event>``. ``some_time`` is true after ``within``."""
-
-    some_time: bool
-    horizon: Number | None
-    event: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class After(Node):
-    """``[[within] h seconds] after <event>``. ``some_time`` is true after ``within``."""
-
-    some_time: bool
-    horizon: Number | None
-    event: Ref
-
-
-TimeConstraint = During | Before | After
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +63,7 @@ class PhraseUse(Node):
     """A catalog phrase with the values of its slots: ``word`` is the predicate's or behaviour's name."""
 
     word: str
-    arguments: tuple[tuple[str, Ref | Name], ...]
+    arguments: tuple[tuple[str, Ref | Name | Quantity], ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from robbdd_tools.catalog.registry import Catalog
 PREDICATE_RULE = "Predicate_"
 ACTION_RULE = "Action_"
 ALIAS = "__"
-_PIECE = re.compile(r"<(?P<slot>\w+)>|\$(?P<name>\w+)|(?P<word>[^\W\d]\w*)|(?P<sign>[^\s\w])")
+_PIECE = re.compile(r"<(?P<slot>\w+)>|\$(?P<name>\w+)|#(?P<quantity>\w+)|(?P<word>[^\W\d]\w*)|(?P<sign>[^\s\w])")
 
 
 def phrase_rules(catalog: Catalog) -> str:
@@ -57,6 +57,8 @@ def _body(phrase: str) -> str:
             parts.append(f"{match['slot']}=VariableRef")
         elif match["name"]:
             parts.append(f"{match['name']}=Name")
+        elif match["quantity"]:
+            parts.append(f"{match['quantity']}=Amount")
         else:
             parts.append(f"'{match['word'] or match['sign']}'")
     return " ".join(parts)

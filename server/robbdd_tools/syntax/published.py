@@ -16,24 +16,21 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.bdd_tree import (
-    After,
-    Before,
     BehaviourUse,
     Body,
     Conjunction,
     Disjunction,
-    During,
     Exists,
     Expression,
     Fluent,
     Negation,
     Template,
     TextClause,
-    TimeConstraint,
     Variant,
     When,
 )
 from robbdd_tools.syntax.scene_tree import Name, Ref
+from robbdd_tools.syntax.time_tree import After, Before, During, TimeConstraint
 
 
 def unnamed_at(span: Span) -> Name:

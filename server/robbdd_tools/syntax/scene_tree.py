@@ -39,6 +39,13 @@ class Text(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Quantity(Node):
+    """A number with a unit, such as ``0.25 m/s``. ``text`` has one space between both."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Number(Node):
     """A number: an ``int`` if written without point and exponent."""
 

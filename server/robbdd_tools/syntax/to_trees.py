@@ -53,10 +53,10 @@ def _value(value: Any, text: str) -> Any:
     return convert(value, text)
 
 
-def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tree.Name], ...]:
+def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tree.Name | tree.Quantity], ...]:
     """Return the slots in written order."""
     fields_of_raw = cast(dict[str, Any], vars(raw))
-    slots: list[tuple[str, tree.Ref | tree.Name]] = [
+    slots: list[tuple[str, tree.Ref | tree.Name | tree.Quantity]] = [
         (name, convert(value, text)) for name, value in fields_of_raw.items() if name[0] != "_" and name != "parent"
     ]
     return tuple(sorted(slots, key=lambda slot: slot[1].span))
@@ -72,6 +72,12 @@ def _number(raw: RawNode, span: Span, _: str) -> tree.Number:
     digits: str = raw.raw
     whole = digits.lstrip("+-").isdigit()
     return tree.Number(span, int(digits) if whole else float(digits))
+
+
+def _quantity(raw: RawNode, span: Span, _: str) -> tree.Quantity:
+    number = re.match(r"[-+\d.eE]+(?<![eE])", raw.raw)
+    assert number is not None
+    return tree.Quantity(span, f"{number[0]} {raw.raw[number.end() :].strip()}")
 
 
 def _inner(field: str) -> Callable[[RawNode, Span, str], Any]:
@@ -123,6 +129,7 @@ def _qualified(assignment: tree.Assignment, template: str) -> tree.Assignment:
 _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
     "Text": _text,
     "Number": _number,
+    "Quantity": _quantity,
     "ObjectSet": _given(tree.ElementSet, kind="object"),
     "WorkspaceSet": _given(tree.ElementSet, kind="workspace"),
     "AgentSet": _given(tree.ElementSet, kind="agent"),

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from robbdd_tools.syntax.bdd_tree import (
-    After,
     Assignment,
-    Before,
     BehaviourTree,
     BehaviourUse,
     Body,
     Conjunction,
     ConstantSet,
     Disjunction,
-    During,
     Emission,
     Event,
     Exists,
@@ -34,7 +31,6 @@ from robbdd_tools.syntax.bdd_tree import (
     TextArgument,
     TextClause,
     TextPredicate,
-    TimeConstraint,
     TreeComposite,
     TreeLeaf,
     TreeNode,
@@ -111,6 +107,7 @@ from robbdd_tools.syntax.scene_tree import (
     Node,
     Number,
     PythonAttribute,
+    Quantity,
     Ref,
     Scene,
     SimilarSet,
@@ -133,6 +130,7 @@ from robbdd_tools.syntax.scenex_tree import (
     Uniform,
     UniformRotation,
 )
+from robbdd_tools.syntax.time_tree import After, Before, During, TimeConstraint
 
 DeclarationTree = (
     Import
@@ -237,6 +235,7 @@ __all__ = [
     "Product",
     "Provider",
     "PythonAttribute",
+    "Quantity",
     "Quaternion",
     "Ref",
     "RevoluteJoint",

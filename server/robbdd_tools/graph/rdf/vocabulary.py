@@ -38,6 +38,8 @@ TIME_TYPES = {
     "after": "time:AfterEventConstraint",
     "during": "time:DuringEventsConstraint",
 }
+QUANTITY = "https://w3id.org/cdt/ucum"
+"""Datatype of a number with a unit (Custom Datatypes, https://w3id.org/cdt/)."""
 SOME_TIME = "rbw:AtSomeTime"
 """Class of a time constraint that must hold at some time in its window instead of throughout."""
 ELEMENT_TYPES = {"object": "env:Object", "workspace": "env:Workspace", "agent": "agn:Agent"}

@@ -125,10 +125,13 @@ class ClauseReader:
     def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
         return {
             slot.name: self.records.text(iri, slot.property)
-            if slot.kind is Kind.NAME
+            if slot.kind is Kind.NAME or (slot.kind is Kind.QUANTITY and self._has_literal(iri, slot.property))
             else self.records.one(iri, slot.property)
             for slot in slots
         }
+
+    def _has_literal(self, iri: Iri, term: str) -> bool:
+        return len(self.records.iris(self.records.all(iri, term))) < len(self.records.all(iri, term))
 
     def time(self, iri: Iri) -> TimeConstraint:
         """Return the time constraint that a node describes."""

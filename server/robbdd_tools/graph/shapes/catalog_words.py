@@ -26,6 +26,7 @@ _FIX = {
     Kind.OBJECT_SET: "name a 'set var' or an 'obj set'",
     Kind.WORKSPACE_SET: "name a 'set var' or a 'ws set'",
     Kind.NAME: "write a name without angle brackets",
+    Kind.QUANTITY: "write a number with a unit, or name a variable",
 }
 
 
@@ -51,6 +52,8 @@ def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> N
         shapes.add((shape, count, Literal(1)))
     if slot.kind is Kind.NAME:
         shapes.add((shape, SH.nodeKind, SH.Literal))
+    elif slot.kind is Kind.QUANTITY:
+        shapes.add((shape, SH.nodeKind, SH.IRIOrLiteral))
     else:
         shapes.add((shape, SH["class"], URIRef(expand(_CLASSES[slot.kind]))))
     shapes.add((shape, SH.severity, SH.Violation))

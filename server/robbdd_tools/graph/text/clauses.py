@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from robbdd_tools.base.quantity_units import is_quantity
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
@@ -24,7 +25,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 
-_SLOT = re.compile(r"<(\w+)>|\$(\w+)")
+_SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 
 
 @dataclass(slots=True)
@@ -140,8 +141,8 @@ class ClauseText:
     def _argument(self, value: Iri | str) -> str:
         if isinstance(value, Iri):
             return self._variable(value)
-        if not NAME.fullmatch(value):
-            raise Incomplete(f"'{value}' is not a name")
+        if not NAME.fullmatch(value) and not is_quantity(value):
+            raise Incomplete(f"'{value}' is neither a name nor a quantity")
         return value
 
     def _variable(self, variable: str) -> str:

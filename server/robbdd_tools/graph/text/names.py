@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.quantity_units import is_quantity
 from robbdd_tools.graph.rdf.prefixes import prefix_for
 from robbdd_tools.graph.rdf.records import Incomplete, Records
-from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
 
 if TYPE_CHECKING:
     from rdflib.term import Node
@@ -120,7 +121,7 @@ class Names:
                 return text
             if isinstance(literal, float) and _NUMBER.fullmatch(text):
                 return f"{text}.0" if text.lstrip("+-").isdigit() else text
-            return quoted(text)
+            return text if kind == QUANTITY and is_quantity(text) else quoted(text)
         return self.reference(str(node))
 
     def _free(self, name: str, owner: str, before: str, node: str) -> str:

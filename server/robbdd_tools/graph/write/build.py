@@ -154,7 +154,7 @@ def _add_constant_set(frame: Frame, declared: tree.ConstantSet) -> None:
         return
     elements: list[Node] = []
     for value in declared.values:
-        target = frame.target(value) if isinstance(value, tree.Ref) else frame.sink.literal(value.value)
+        target = frame.target(value) if isinstance(value, tree.Ref) else frame.sink.value(value)
         if target is not None:
             frame.sink.mark(node, "bdd:elements", target, frame.at(value))
             elements.append(target)

@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
 from robbdd_tools.graph.write.source_map import Location, SourceMapBuilder
+from robbdd_tools.syntax.tree import Quantity
 
 if TYPE_CHECKING:
     from rdflib import Graph, URIRef
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.graph.write.declarations import Key
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
-    from robbdd_tools.syntax.tree import Name, Ref
+    from robbdd_tools.syntax.tree import Name, Number, Ref, Text
     from robbdd_tools.syntax.tree import Node as TreeNode
 
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\udfff]*")
@@ -53,6 +54,16 @@ class Sink:
         kinds = {bool: "xsd:boolean", int: "xsd:integer", float: "xsd:double"}
         lexical = str(value).lower() if isinstance(value, bool) else str(value)
         return Literal(lexical, datatype=URIRef(expand(datatype or kinds[type(value)])))
+
+    def quantity(self, text: str) -> Node:
+        """Return the literal of a number with a unit."""
+        from rdflib import Literal, URIRef
+
+        return Literal(text, datatype=URIRef(QUANTITY))
+
+    def value(self, value: Number | Text | Quantity) -> Node:
+        """Return the literal of a value in a set or a variation."""
+        return self.quantity(value.text) if isinstance(value, Quantity) else self.literal(value.value)
 
     def claim(self, node: URIRef, location: Location) -> bool:
         """Reserve a node for one declaration. Return true if no other declaration has reserved it."""

@@ -183,7 +183,7 @@ class _VariationWriter:
     def _value(self, value: tree.Value) -> Node | None:
         if isinstance(value, tree.Ref):
             return self.frame.target(value)
-        return self.frame.sink.literal(value.value)
+        return self.frame.sink.value(value)
 
     def _mark(self, variable: URIRef | None, written: tree.Node, node: Node | None) -> None:
         """Record the positions of a variable's value and, if it is a list, of each value in the list."""

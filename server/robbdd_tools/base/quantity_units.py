@@ -1,0 +1,78 @@
+"""Units of quantities: what they measure, and their size in SI units."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from math import pi
+
+UNITS = {
+    "m": ("length", 1.0),
+    "cm": ("length", 0.01),
+    "mm": ("length", 0.001),
+    "s": ("time", 1.0),
+    "ms": ("time", 0.001),
+    "rad": ("angle", 1.0),
+    "deg": ("angle", pi / 180),
+    "N": ("force", 1.0),
+    "kg": ("mass", 1.0),
+    "m/s": ("speed", 1.0),
+    "deg/s": ("angular speed", pi / 180),
+    "%": ("ratio", 0.01),
+}
+"""Unit → what it measures, and its size in the SI unit. All are codes of UCUM (Unified Code for Units of Measure)."""
+_QUANTITY = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S+)")
+
+
+class QuantityError(ValueError):
+    """A text is not a quantity, or the quantity measures something else. The message says what to write."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with a unit of ``UNITS``."""
+
+    value: float
+    unit: str
+
+    @property
+    def factor(self) -> float:
+        """The size of the unit in the SI unit."""
+        return si_factor(self.unit)
+
+    @property
+    def si(self) -> float:
+        """The number in the SI unit."""
+        return self.value * self.factor
+
+
+def si_factor(unit: str) -> float:
+    """Return the size of a unit in the SI unit; 1 for any other unit."""
+    return UNITS[unit][1] if unit in UNITS else 1.0
+
+
+def is_quantity(text: str) -> bool:
+    """Return whether a text is a number with a unit of ``UNITS``."""
+    match = _QUANTITY.fullmatch(text)
+    return match is not None and match[2] in UNITS
+
+
+def units_of(dimension: str) -> tuple[str, ...]:
+    """Return the units that measure something."""
+    return tuple(unit for unit, (measures, _) in UNITS.items() if measures == dimension)
+
+
+def read_quantity(text: str, dimension: str) -> Quantity:
+    """Return the quantity that a text states, such as ``0.25 m/s``. Raises ``QuantityError``."""
+    match = _QUANTITY.fullmatch(text.strip())
+    example = f"write {_article(dimension)} with its unit, as in '5 {units_of(dimension)[0]}'"
+    if match is None or match[2] not in UNITS:
+        raise QuantityError(f"'{text}' has no unit: {example}")
+    measures = UNITS[match[2]][0]
+    if measures != dimension:
+        raise QuantityError(f"'{text}' is {_article(measures)}, not {_article(dimension)}: {example}")
+    return Quantity(float(match[1]), match[2])
+
+
+def _article(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"

@@ -1,0 +1,75 @@
+"""``quantity``: a predicate gets a quantity that measures something else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.quantity_units import QuantityError, read_quantity
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.template_variants import scenarios
+from robbdd_tools.names.types import variable_key, written_elements
+from robbdd_tools.names.uses import clauses_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.catalog.api import Slot
+    from robbdd_tools.checks.template_variants import Scenario
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.names.uses import Clauses
+
+CODE = "quantity"
+
+
+def quantity(site: Site) -> Iterator[Diagnostic]:
+    """Report quantities in clauses, and values of variables in variations, that do not fit their predicate."""
+    for clauses in clauses_of(site.placed.declaration):
+        for slot, written in _slots(clauses):
+            problem = _problem(written.text, slot) if isinstance(written, tree.Quantity) else ""
+            if problem:
+                yield finding(site, written, Severity.ERROR, CODE, problem)
+    for scenario in scenarios(site):
+        yield from _values(scenario)
+
+
+def _values(scenario: Scenario) -> Iterator[Diagnostic]:
+    needed: dict[str, list[tuple[Site, tree.Ref, Slot]]] = {}
+    for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, scenario.outer)):
+        if site is None or clauses is None:
+            continue
+        for slot, written in _slots(clauses):
+            variable = site.target(written) if isinstance(written, tree.Ref) else None
+            if variable is not None and isinstance(written, tree.Ref):
+                needed.setdefault(variable_key(variable), []).append((site, written, slot))
+    for column in scenario.columns if needed else ():
+        uses = needed.get(variable_key(column.variable), ()) if column.variable is not None else ()
+        for written in column.written if uses else ():
+            for node, element in written_elements(scenario.site, written):
+                # Any other value is a conflict of types.
+                for site, ref, slot in uses if element.kind == "quantity" else ():
+                    problem = _problem(element.name, slot)
+                    if problem:
+                        related = (related_to(site, ref, f"the {slot.name} that it is used for"),)
+                        yield finding(scenario.site, node, Severity.ERROR, CODE, problem, related)
+                        break
+
+
+def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Ref | tree.Name | tree.Quantity]]:
+    """Yield the slots for quantities in clauses, with what fills them."""
+    catalog = load_catalog()
+    for phrase in clauses.phrases:
+        word = catalog.predicates.get(phrase.word) or catalog.behaviours[phrase.word]
+        written = dict(phrase.arguments)
+        yield from ((slot, written[slot.name]) for slot in word.slots if slot.kind is Kind.QUANTITY)
+
+
+def _problem(text: str, slot: Slot) -> str:
+    try:
+        read_quantity(text, slot.dimension)
+    except QuantityError as error:
+        return str(error)
+    return ""

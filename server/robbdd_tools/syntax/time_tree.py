@@ -1,0 +1,37 @@
+"""Syntax trees of time constraints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robbdd_tools.syntax.scene_tree import Node, Number, Ref
+
+
+@dataclass(frozen=True, slots=True)
+class During(Node):
+    """``[at some time] from <start> until <end>``."""
+
+    start: Ref
+    end: Ref
+    some_time: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Before(Node):
+    """``[[within] h seconds] before <event>``. ``some_time`` is true after ``within``."""
+
+    some_time: bool
+    horizon: Number | None
+    event: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class After(Node):
+    """``[[within] h seconds] after <event>``. ``some_time`` is true after ``within``."""
+
+    some_time: bool
+    horizon: Number | None
+    event: Ref
+
+
+TimeConstraint = During | Before | After
