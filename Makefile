@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo test setup lint test-python test-client test-editors fuzz nightly mutants bench package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -40,6 +40,12 @@ setup-editors:
 	tests/editors/neovim/setup.sh
 	tests/editors/emacs/setup.sh
 	tests/editors/workbench/setup.sh
+
+# A bag of ROS 2 to try `robbdd judge LOG` with: build/sample-log (docs/logs.md)
+sample-log: $(READY)
+	rm -rf build/sample-run build/sample-log
+	$(BIN)/robbdd run examples/pickplace/pickplace.bdd --first 1 --output build/sample-run
+	$(BIN)/robbdd export build/sample-run --ros2 -o build/sample-log
 
 # Edits models at random for as long as one likes: make fuzz SEQUENCES=100000
 SEQUENCES ?= 20000

@@ -59,12 +59,11 @@ def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     bodies = {str(model.body(body).name): body for body in range(1, model.nbody)}
-    seen = [
-        name for name in trace.names if name in bodies and np.isfinite(trace.positions[:, trace.column(name)]).any()
-    ]
+    observed = np.isfinite(trace.positions).all(axis=2).any(axis=0).tolist()
+    seen = [name for name, known in zip(trace.names, observed, strict=True) if known and name in bodies]
     drawn = {bodies[name]: name for name in seen}
-    known = {workspace: [box for box in boxes if box[0] in seen] for workspace, boxes in regions.items()}
-    yield 0.0, "/geometry", geometry(model, drawn, known)
+    carried = {workspace: [box for box in boxes if box[0] in seen] for workspace, boxes in regions.items()}
+    yield 0.0, "/geometry", geometry(model, drawn, carried)
     solids = {name: shapes for body, name in drawn.items() if (shapes := _shapes(model, body))}
     yield 0.0, "/scene", {"deletions": [], "entities": [_entity(name, solids[name]) for name in solids]}
     if not seen:
