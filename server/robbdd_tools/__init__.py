@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Severity
     from robbdd_tools.base.exceptions import RobbddError
     from robbdd_tools.gherkin.select import SelectionError
+    from robbdd_tools.logs.log_contents import UnreadableLog
     from robbdd_tools.monitor.trace import EventStamp, Trace
     from robbdd_tools.monitor.verdict import Outcome
     from robbdd_tools.protocol.specs import ScenarioSpec
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.judging import Judged, NothingToJudge, judge
+    from robbdd_tools.workbench.log_judging import JudgedLog, NotOneScenario, judge_log
     from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, NothingToRun, load
     from robbdd_tools.workbench.plan import Coverage, Plan
     from robbdd_tools.workbench.replaying import CannotReplay, Replayed, ReplayedTrace, replay
@@ -40,11 +42,13 @@ _HOMES = {
     "ExecutionResult": "workbench.execution_rows",
     "Finding": "workbench.diagnostics",
     "Judged": "workbench.judging",
+    "JudgedLog": "workbench.log_judging",
     "Keeping": "workbench.folder",
     "Model": "workbench.model",
     "ModelErrors": "workbench.model",
     "NoSuchRun": "run.store",
     "NotAModel": "workbench.model",
+    "NotOneScenario": "workbench.log_judging",
     "NothingToJudge": "workbench.judging",
     "NothingToRun": "workbench.model",
     "Outcome": "monitor.verdict",
@@ -64,10 +68,12 @@ _HOMES = {
     "Severity": "base.diagnostic",
     "TextEdit": "workbench.diagnostics",
     "Trace": "monitor.trace",
+    "UnreadableLog": "logs.log_contents",
     "UnreadableTrace": "traces.mcap_file",
     "UserCodeRefused": "run.user_code",
     "find_run": "workbench.stored",
     "judge": "workbench.judging",
+    "judge_log": "workbench.log_judging",
     "load": "workbench.model",
     "replay": "workbench.replaying",
     "runs": "workbench.stored",
@@ -81,11 +87,13 @@ __all__ = [
     "ExecutionResult",
     "Finding",
     "Judged",
+    "JudgedLog",
     "Keeping",
     "Model",
     "ModelErrors",
     "NoSuchRun",
     "NotAModel",
+    "NotOneScenario",
     "NothingToJudge",
     "NothingToRun",
     "Outcome",
@@ -105,10 +113,12 @@ __all__ = [
     "Severity",
     "TextEdit",
     "Trace",
+    "UnreadableLog",
     "UnreadableTrace",
     "UserCodeRefused",
     "find_run",
     "judge",
+    "judge_log",
     "load",
     "replay",
     "runs",

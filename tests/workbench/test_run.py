@@ -181,3 +181,4 @@ def test_the_examples_of_the_python_page_run(
     assert "finished 4 4" in printed
     assert "\nreplayed True\n" in printed
     assert "\njudged holds\n" in printed
+    assert "\nlogged unknown (" in printed

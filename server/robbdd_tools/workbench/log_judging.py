@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.logs.log_contents import UnreadableLog
 from robbdd_tools.protocol.log_request import LOG_REQUEST, LogRequest
 from robbdd_tools.protocol.messages import LogLine
 from robbdd_tools.protocol.specs import plain_name
@@ -18,6 +20,7 @@ from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.recording import failure_reason
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Policy
+from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.run import begin_recording
 
@@ -43,6 +46,54 @@ class LogNames:
     max_gap: float = 0.5
     rate: float = 200.0
     annotations: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedLog:
+    """The verdicts of a scenario's clauses on a log.
+
+    ``result`` is stored like that of an execution, as run ``number`` (0 if it is not kept in a store). ``remarks`` are
+    sentences on how the log was read, and on what it does not contain.
+    """
+
+    result: ExecutionResult
+    number: int
+    remarks: tuple[str, ...]
+
+
+def judge_log(
+    log: str | os.PathLike[str],
+    plan: Plan,
+    *,
+    frames: Mapping[str, str] | None = None,
+    world: str = "",
+    max_gap: float = 0.5,
+    rate: float = 200.0,
+    events: str | os.PathLike[str] | None = None,
+    keeping: Keeping | None = None,
+) -> JudgedLog:
+    """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
+
+    - ``log``: a ROS bag, an MCAP file or a CSV table.
+    - ``plan``: a plan of this scenario alone: ``model.scenarios(where="thing=cube0 and goal=left_ws")``.
+    - ``frames``: maps an element (local name or CURIE) to its frame in the log; the others are found by name.
+    - ``world``: the frame of the world; by default, the root of the frames.
+    - ``max_gap``: the largest time between two observations that are interpolated, s.
+    - ``rate``: the largest number of samples per second.
+    - ``events``: a CSV table of events that the log does not contain, with the columns ``time`` (s since the begin of
+      the log) and ``event``.
+    - ``keeping``: where the result is stored; by default, in the store of the model's project.
+
+    Raises ``UnreadableLog``, ``NotOneScenario``, ``UserCodeRefused`` and ``OSError``.
+    """
+    names = LogNames(dict(frames or {}), world, max_gap, rate, None if events is None else Path(events))
+    with LogJudgement(plan, Path(log), names, keeping) as judgement:
+        for _ in judgement.messages():
+            pass
+        if judgement.problem:
+            raise UnreadableLog(judgement.problem)
+        (result,) = execution_results(judgement.progress.as_json())
+        return JudgedLog(result, judgement.place.number, tuple(judgement.remarks))
 
 
 class LogJudgement:
