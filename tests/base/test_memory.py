@@ -10,6 +10,8 @@ import threading
 import tracemalloc
 import weakref
 from collections.abc import Generator, Iterator
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,14 +20,17 @@ import psutil
 import pytest
 
 from kit import MODEL, SCENE
+from robbdd_tools.base.checkpoint import Abandoned
 from robbdd_tools.features import run_verdicts as results
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp import worker
+from robbdd_tools.lsp.analysis_thread import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.framing import Request, frame
 from robbdd_tools.lsp.handlers import create_server
+from robbdd_tools.lsp.requests import Requests
 from robbdd_tools.names.project import Project
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.syntax.declaration import Declaration
@@ -36,7 +41,7 @@ class Cycle:
     """What only a search for cycles frees, as every rdflib graph."""
 
     def __init__(self) -> None:
-        self.me = self
+        self.me: Cycle | None = self
 
 
 @pytest.fixture
@@ -103,6 +108,53 @@ def test_declarations_of_the_past_live_in_the_bounded_cache_only() -> None:
     gc.collect()
     alive = (entry for entry in gc.get_objects() if isinstance(entry, Declaration))
     assert sum("in-tray-" in declaration.text for declaration in alive) < 20
+
+
+@pytest.mark.usefixtures("no_searches")
+async def test_work_that_is_abandoned_or_fails_leaves_nothing_behind() -> None:
+    thread = AnalysisThread()
+    try:
+        assert (await _after_error(thread, Abandoned))() is None
+        assert (await _after_error(thread, ValueError))() is None
+    finally:
+        thread.stop()
+
+
+async def _after_error(thread: AnalysisThread, kind: type[Exception]) -> weakref.ref[Any]:
+    """Raise an error in the analysis thread; return a reference to what the work used."""
+    used = Cycle()
+    used.me = None
+    left = weakref.ref(used)
+
+    def work(error: type[Exception], _: object) -> None:
+        raise error
+
+    doing = partial(work, kind, used)
+    del used
+    with suppress(Abandoned, ValueError):
+        await thread.do(doing)
+    del doing
+    # The thread keeps its last job until it gets another one.
+    await thread.do(lambda: None)
+    return left
+
+
+@pytest.mark.usefixtures("no_searches")
+async def test_a_request_that_is_cancelled_leaves_no_task_behind() -> None:
+    requests = Requests()
+
+    async def handler() -> None:
+        await asyncio.Event().wait()
+
+    task = asyncio.create_task(requests.with_logged_errors("robbdd/test", handler)())
+    left = weakref.ref(task)
+    await asyncio.sleep(0)
+    task.cancel()
+    with suppress(asyncio.CancelledError):
+        await task
+    del task
+    await asyncio.sleep(0)
+    assert left() is None
 
 
 async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:

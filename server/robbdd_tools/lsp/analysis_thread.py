@@ -60,6 +60,8 @@ class AnalysisThread:
             if self._stopped:  # the session ends: nobody waits for the result
                 raise asyncio.CancelledError from None
             raise
+        finally:
+            del job  # as in _run
 
     def stop(self) -> None:
         """Start no further work."""
@@ -90,12 +92,17 @@ class AnalysisThread:
             job.done.set_exception(error)
         finally:
             self._running.pop()
+            # An error refers to this frame: with the job in it, the error, its future and the snapshot of the work
+            # would be a reference cycle.
+            del job
 
     def _look(self) -> None:
-        job = self._running[-1]
-        while not job.urgent and self._urgent:
+        while not self._running[-1].urgent and self._urgent:
             self._run(self._urgent.popleft())
+        if self._stopped or self._is_over(self._running[-1]):
+            raise Abandoned
+
+    def _is_over(self, job: _Job) -> bool:
         # A request between two edits must see the first one.
         replaced = job.replacing is not None and bool(self._urgent) and self._urgent[0].replacing == job.replacing
-        if job.abandoned or replaced or self._stopped:
-            raise Abandoned
+        return job.abandoned or replaced

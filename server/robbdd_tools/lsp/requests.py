@@ -61,6 +61,8 @@ class Requests:
                     raise
                 finally:
                     self._waiting.discard(waiting)
+                    # The task's error refers to this frame: with the task in it, they would be a reference cycle.
+                    waiting.task = None
 
             return with_logged_errors
 

@@ -148,7 +148,8 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
     from rdflib import Graph
 
     _check_format(format)
-    graph = Graph(bind_namespaces="none")
+    # rdflib's default store also keeps the context of each triple.
+    graph = Graph("SimpleMemory", bind_namespaces="none")
     loader = (loader or ContextLoader()).beside(base)
     try:
         if FORMATS[format] == "json-ld":

@@ -60,11 +60,10 @@ def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
     short = Graph(bind_namespaces="none")
     prefixes = bind_prefixes(short, user_prefixes(graph))
     ordered = sorted(prefixes.items(), key=lambda pair: -len(pair[1]))
-    nodes = {node for triple in graph for node in triple if isinstance(node, URIRef)}
     names: dict[str, str] = {}
-    for node in nodes:
+    for node in {str(node) for triple in graph for node in triple if isinstance(node, URIRef)}:
         fitting = next(((p, ns) for p, ns in ordered if node.startswith(ns) and len(node) > len(ns)), None)
-        names[str(node)] = str(node) if fitting is None else f"{fitting[0]}:{node[len(fitting[1]) :]}"
+        names[node] = node if fitting is None else f"{fitting[0]}:{node[len(fitting[1]) :]}"
     for owner, node in _blank_owners(graph) if owners is None else owners:
         if isinstance(node, BNode) and str(owner) in names:
             names.setdefault(str(node), f"a node of {names[str(owner)]}")
