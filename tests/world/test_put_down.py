@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from robbdd_tools.protocol.specs import SceneSpec
+from robbdd_tools.world import put_down
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
@@ -193,3 +194,18 @@ def test_an_object_without_a_region_carries_a_workspace_above_it() -> None:
     body = simulation.data.xpos[simulation.model.body("env:box").id]
     assert hypot(*(place.position[:2] - body[:2])) < 0.05
     assert place.position[2] == pytest.approx(body[2] + box.rest_height, abs=1e-3)
+
+
+@pytest.mark.parametrize("where", [TRAY_WS, BENCH_WS])
+def test_without_room_for_a_hand_an_object_is_put_next_to_another_and_not_onto_it(
+    where: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(put_down, "HAND_GAP", 10.0)
+    at = (0.69, 0.0, 0.14) if where == TRAY_WS else (0.425, 0.0, 0.13)
+    simulation = world(WITH_TRAY, ball1=at) if where == TRAY_WS else world(**CLEAR, ball1=at)
+    objects = simulation.world.cast.objects
+    wanted = 1000 * (footprint(objects[CUBE]) + footprint(objects[BALL]))
+    away = [hypot(x - 1000 * at[0], y) for x, y, _ in places(simulation, where)]
+    free = [distance >= wanted - 1 for distance in away]
+    assert free == sorted(free, reverse=True)
+    assert 0 < sum(free) < 49

@@ -74,7 +74,7 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    """Yield places on a board or tray: those with room for a hand first, then by distance from the centre."""
+    """Yield places on a board or tray: those with most room first, then by distance from the centre."""
     position, rotation = simulation.pose(carrier)
     radius = footprint(simulation.world.cast.objects[name])
     others = _others(simulation, name, carrier)
@@ -86,7 +86,7 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
     points = [position + rotation @ np.array([x + dx, y + dy, z - region.half[2]]) for dx, dy in offsets]
     closing = atan2(rotation[1, longest], rotation[0, longest])
     # Sorting is stable: equals stay ordered by distance from the centre.
-    for point in sorted(points, key=lambda point: _room(point[0], point[1], others) < radius + HAND_GAP):
+    for point in sorted(points, key=lambda point: _crowding(point[0], point[1], others, radius)):
         yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
 
 
@@ -100,12 +100,13 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
     (cx, cy), (hx, hy) = area
     shares = np.linspace(-1.0, 1.0, GRID)
     others = _others(simulation, name, carrier)
-    wanted = footprint(simulation.world.cast.objects[name]) + HAND_GAP
+    radius = footprint(simulation.world.cast.objects[name])
     grid = [(float(cx + sx * hx), float(cy + sy * hy)) for sx in shares for sy in shares]
     points = [point for point in grid if abs(bearing(robot.base, *point)) <= BEARING]
-    roomy = [point for point in points if _room(*point, others) >= wanted]
+    crowding = {point: _crowding(*point, others, radius) for point in points}
+    roomy = [point for point in points if not crowding[point]]
     surface = float(position[2]) + region.center[2] - region.half[2]
-    for x, y in sorted(roomy or points, key=lambda point: hypot(point[0] - cx, point[1] - cy)):
+    for x, y in sorted(roomy or points, key=lambda point: (crowding[point], hypot(point[0] - cx, point[1] - cy))):
         yield Target((x, y, surface), ONTO_TABLE, None)
 
 
@@ -117,6 +118,12 @@ def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float
             position, _ = simulation.pose(other)
             found.append((float(position[0]), float(position[1]), footprint(model)))
     return found
+
+
+def _crowding(x: float, y: float, others: list[tuple[float, float, float]], radius: float) -> int:
+    """Return 0 if an object and a hand have room at a point, 1 if only the object has, 2 if it would touch another."""
+    room = _room(x, y, others)
+    return (room < radius + HAND_GAP) + (room < radius)
 
 
 def _room(x: float, y: float, others: list[tuple[float, float, float]]) -> float:
