@@ -15,11 +15,11 @@ PAGE = ROOT / "docs" / "performance.md"
 def main(wanted: Sequence[str]) -> None:
     """Measure everything, or some sections of the page, and replace their tables; the words around them stay."""
     sys.path.insert(0, str(ROOT / "tests"))
-    from tests.bench import editor, gherkin, language, limits, running, shapes
+    from tests.bench import editor, gherkin, language, limits, rejudging, running, shapes
 
     sections: dict[str, Callable[[], Iterable[tuple[str, str]]]] = {
         "Language": language.rows,
-        "Editors": editor.rows,
+        "Editors": lambda: (*editor.rows(), *rejudging.rows()),
         "Shapes and queries": shapes.rows,
         "Limits": limits.rows,
         "Gherkin": gherkin.rows,

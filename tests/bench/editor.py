@@ -53,7 +53,7 @@ def take_verdict(self, line, verdict):
             file.write(f"{{self._index}} {{line}} {{Execution.stamp}}\\n")
     Execution.stamp = 0.0
     return report(self, line, verdict)
-Execution.stamp, Execution.advance_until, ScenarioRun._report = 0.0, stamped, told
+Execution.stamp, Execution.advance_until, ScenarioRun._report = 0.0, stamped, take_verdict
 """
 """A user's step file that records when the simulation has progressed as far as a clause needs."""
 

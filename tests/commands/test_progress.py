@@ -81,3 +81,8 @@ def test_a_reason_that_several_clauses_share_is_told_once_below_them() -> None:
     assert len(clauses) > 1
     assert lines[lines.index(clauses[-1]) + 1] == "      timed out after 0.001 s"
     assert sum("timed out" in line for line in lines) == 1
+
+
+def test_a_bar_counts_unknown_scenarios_as_errored_as_editors_do() -> None:
+    written = on_a_terminal([*COMMAND, "--timeout", "0.001"], 160, 1, TERM="xterm-256color", NO_COLOR="1")
+    assert "0 hold, 0 failed, 1 errored" in written

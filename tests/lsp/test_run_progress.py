@@ -79,6 +79,25 @@ async def test_a_run_shows_its_progress_where_the_client_shows_such_things(
 
 @pytest.mark.physics
 @pytest.mark.parametrize("client", [SHOWN], indirect=True)
+async def test_the_progress_counts_violated_scenarios_as_failed_and_unknown_ones_as_errored(
+    client: LanguageClient, tmp_path: Path, told: Told
+) -> None:
+    editor = Editor(client, tmp_path)
+    editor.open()
+    goal = "<thing> is located at <goal>, after <evt-{}>"
+    for event, word in (("pick-end", "failed"), ("stray", "errored")):
+        told.clear()
+        editor.change(goal.format("place-end"), goal.format(event))
+        if event == "stray":
+            editor.change("Event (ns=crit) evt-end", "Event (ns=crit) evt-end\nEvent (ns=crit) evt-stray")
+        params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri, "first": 1}])
+        await client.workspace_execute_command_async(params)
+        assert [value["message"] for kind, value in told if kind == "report"] == [f"1/1 scenarios, 1 {word}"]
+        editor.change(goal.format(event), goal.format("place-end"))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("client", [SHOWN], indirect=True)
 async def test_the_progress_of_a_cancelled_run_ends_by_saying_so(
     client: LanguageClient, tmp_path: Path, told: Told
 ) -> None:

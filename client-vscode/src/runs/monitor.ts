@@ -13,10 +13,15 @@ export interface Refusal {
   readonly problem: string;
 }
 
+/** Milliseconds between two updates of the status item during a run. */
+const UPDATE_PAUSE = 100;
+
 export class RunMonitor implements vscode.Disposable {
   private readonly channel = vscode.window.createOutputChannel("RobBDD Runs");
   private readonly reports = new Map<string, RunReport>();
   private summary = "";
+  private update: NodeJS.Timeout | undefined;
+  private running = false;
   private readonly heard = new vscode.EventEmitter<RunNotification>();
   private readonly refused = new vscode.EventEmitter<Refusal>();
   private readonly over = new vscode.EventEmitter<string | undefined>();
@@ -40,7 +45,11 @@ export class RunMonitor implements vscode.Disposable {
     }
     this.print(report.add(message));
     this.settle(run, report);
-    this.publish();
+    if (message.type === "RunStarted" || report.finished) {
+      this.publish();
+    } else {
+      this.publishSoon();
+    }
     this.heard.fire(notification);
     if (message.type === "ClauseJudged" && message.verdict === "holds") {
       reach("somethingHeld");
@@ -67,6 +76,7 @@ export class RunMonitor implements vscode.Disposable {
   }
 
   dispose(): void {
+    clearTimeout(this.update);
     this.channel.dispose();
     this.heard.dispose();
     this.refused.dispose();
@@ -90,17 +100,28 @@ export class RunMonitor implements vscode.Disposable {
   }
 
   private print(lines: readonly string[]): void {
-    for (const line of lines) {
-      this.channel.appendLine(line);
+    if (lines.length > 0) {
+      this.channel.appendLine(lines.join("\n"));
     }
   }
 
+  private publishSoon(): void {
+    this.update ??= setTimeout(() => {
+      this.publish();
+    }, UPDATE_PAUSE);
+  }
+
   private publish(): void {
+    clearTimeout(this.update);
+    this.update = undefined;
     const runs = [...this.reports.values()].map((report): RunProgress => {
       const { total, passed, failed, errored } = report.tally;
       return { finished: passed + failed + errored, total };
     });
-    void vscode.commands.executeCommand("setContext", "robbdd.running", runs.length > 0);
+    if (this.running !== runs.length > 0) {
+      this.running = runs.length > 0;
+      void vscode.commands.executeCommand("setContext", "robbdd.running", this.running);
+    }
     this.onChange(runs, this.summary);
   }
 }

@@ -1,5 +1,6 @@
 // One run as text: messages in, lines for the output channel and a summary out.
 import { signed } from "../quantity";
+import { Causes } from "./causes";
 import type { ClauseJudged, RunMessage, UserCodeFailed } from "./messages";
 
 export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
@@ -20,11 +21,14 @@ export class RunReport {
   private total = 0;
   private ended = false;
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
+  private readonly causes = new Map<number, Causes>();
   /** Parallel scenarios are reported one after the other, each when it has ended. */
   private readonly reported = new Map<number, string[]>();
   /** The reported errors in users' code, with their numbers. */
   private readonly faults = new Map<string, number>();
   private readonly outcomes = new Map<number, Outcome>();
+  /** Number of ended scenarios with each outcome; counting them again with each message would be quadratic. */
+  private readonly counts: Record<Outcome, number> = { passed: 0, failed: 0, errored: 0 };
 
   constructor(private readonly name: string) {}
 
@@ -34,8 +38,7 @@ export class RunReport {
   }
 
   get tally(): Tally {
-    const count = (wanted: Outcome) => [...this.outcomes.values()].filter((outcome) => outcome === wanted).length;
-    return { total: this.total, passed: count("passed"), failed: count("failed"), errored: count("errored") };
+    return { total: this.total, ...this.counts };
   }
 
   /** Process a message and return the lines that it adds to the report. */
@@ -46,6 +49,7 @@ export class RunReport {
         return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
       case "ScenarioStarted":
         this.verdicts.set(message.index, []);
+        this.causes.set(message.index, new Causes());
         this.reported.set(message.index, [
           `  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd(),
         ]);
@@ -55,7 +59,7 @@ export class RunReport {
         return [];
       case "ClauseJudged":
         this.verdicts.get(message.index)?.push(message.verdict);
-        this.reported.get(message.index)?.push(`    ${describeClause(message, this.faults.get(message.fault ?? ""))}`);
+        this.reported.get(message.index)?.push(`    ${this.describe(message)}`);
         return [];
       case "ScenarioFinished":
         return [...this.open(message.index), this.finishScenario(message.index, message.simulated, message.wall)];
@@ -111,6 +115,14 @@ export class RunReport {
     return [`    error ${number}: ${failed}`, ...calls.map((line) => `    ${line}`)];
   }
 
+  private describe(clause: ClauseJudged): string {
+    const error = this.faults.get(clause.fault ?? "");
+    const cause = this.causes.get(clause.index)?.add(clause.name ?? clause.sentence, clause);
+    return error === undefined && cause !== undefined
+      ? `${SIGNS[clause.verdict]} ${clause.sentence}: ${cause}`
+      : describeClause(clause, error);
+  }
+
   /** The lines of a scenario not yet reported. */
   private open(index: number): string[] {
     const lines = this.reported.get(index) ?? [];
@@ -124,6 +136,11 @@ export class RunReport {
 
   private finishScenario(index: number, simulated: number, wall: number): string {
     const outcome = decide(this.verdicts.get(index) ?? []);
+    const before = this.outcomes.get(index);
+    if (before !== undefined) {
+      this.counts[before] -= 1;
+    }
+    this.counts[outcome] += 1;
     this.outcomes.set(index, outcome);
     return `    ${outcome} after ${seconds(simulated)} simulated, ${seconds(wall)} on the clock`;
   }

@@ -44,9 +44,9 @@ export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined)
         run.failed(item, located(new vscode.TestMessage(text), place), duration);
       });
     },
-    errored: (item, { text }, place, duration) => {
+    errored: (item, { text, folded }, place, duration) => {
       open(() => {
-        run.errored(item, located(new vscode.TestMessage(text), place), duration);
+        run.errored(item, folded === true ? [] : located(new vscode.TestMessage(text), place), duration);
       });
     },
     output: (line, item) => {

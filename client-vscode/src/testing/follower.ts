@@ -1,9 +1,10 @@
 // Show the messages of a run at the items of the test tree.
 import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } from "../runs/messages";
 import { RunReport } from "../runs/report";
+import { Causes } from "../runs/causes";
 import type { Item } from "./items";
 import type { ListedTest, Place } from "./listing";
-import { type Failure, type Outcome, outcomeOf } from "./outcomes";
+import { type Failure, type Outcome, folded, outcomeOf } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
@@ -20,6 +21,7 @@ export interface Sink<I> {
 interface Begun<I> {
   readonly item: I;
   readonly values: string;
+  readonly causes: Causes;
   /** When the judgement of the current clause began, ms. */
   since: number;
 }
@@ -95,7 +97,7 @@ export class RunFollower<I extends Item<I>> {
     const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
-      this.scenarios.set(message.index, { item, values: message.values, since: instant });
+      this.scenarios.set(message.index, { item, values: message.values, causes: new Causes(), since: instant });
     }
   }
 
@@ -117,7 +119,8 @@ export class RunFollower<I extends Item<I>> {
     if (scenario === undefined || item === undefined || message.cancelled === true) {
       return;
     }
-    const outcome = this.worst.add(item, outcomeOf(message, scenario.values), message.robustness);
+    const cause = scenario.causes.add(message.name ?? message.sentence, message);
+    const outcome = this.worst.add(item, folded(outcomeOf(message, scenario.values), cause), message.robustness);
     this.tree.note(item, outcome.note);
     showOutcome(this.sink, item, outcome, message.source ?? null, instant - scenario.since);
     scenario.since = instant;

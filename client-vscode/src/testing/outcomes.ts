@@ -16,6 +16,8 @@ export interface Judged {
 export interface Failure {
   /** Text shown next to the clause, the reason first. */
   readonly text: string;
+  /** The failure is a consequence of another clause, which has the reason; this one gets no message of its own. */
+  readonly folded?: true;
 }
 
 export interface Outcome {
@@ -43,6 +45,11 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
     case "unknown":
       return { state: "errored", note: judged.reason || "unknown", failure: failureOf(judged, values) };
   }
+}
+
+/** The outcome of a clause that is a consequence of another one, which `words` name; without words, `outcome` itself. */
+export function folded(outcome: Outcome, words: string | undefined): Outcome {
+  return words === undefined ? outcome : { state: "errored", note: words, failure: { text: words, folded: true } };
 }
 
 /** `values` distinguish the scenario from others shown at the same clause. */

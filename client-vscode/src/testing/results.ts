@@ -1,9 +1,10 @@
 // Show results of earlier or external runs as a finished run.
 import { isRecord } from "../values";
+import { Causes } from "../runs/causes";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
-import { type Outcome, failureOf } from "./outcomes";
+import { type Outcome, failureOf, folded } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
@@ -73,11 +74,13 @@ export async function showResults<I extends Item<I>>(
     }
     const scenario = tree.scenario(variant, found.variation, found.values);
     const whole = found.seconds === null ? undefined : found.seconds * 1000;
+    const causes = new Causes();
     for (const clause of found.clauses) {
+      const cause = causes.add(nameOf(clause), clause);
       for (const item of itemsOf(tree, scenario, clause)) {
         // Only whole executions are timed: each clause gets an equal share, so that the sum is right.
         const share = whole === undefined ? undefined : whole / found.clauses.length;
-        const outcome = worst.add(item, outcomeOf(clause, found.values));
+        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), cause));
         tree.note(item, outcome.note);
         showOutcome(sink, item, outcome, tree.about(item)?.place ?? null, share);
         if (found.stale || clause.stale) {
@@ -87,6 +90,11 @@ export async function showResults<I extends Item<I>>(
     }
   }
   return { outdated, left };
+}
+
+/** The local name of a clause, or its sentence. */
+function nameOf({ clause, sentence }: FoundClause): string {
+  return clause === null ? sentence : (/[^/#]*$/.exec(clause)?.[0] ?? clause);
 }
 
 /** The variant of an execution with its scenarios, undefined if the workspace no longer has it. */

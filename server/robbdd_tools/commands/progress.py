@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,7 @@ MAX_CONTACTS = 5
 """Maximum contacts shown for one scenario."""
 INDENT = (0, 0, 0, 6)
 """Padding of a reason, which is indented below its clauses."""
+_BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
 
 
@@ -82,9 +84,8 @@ class Display:
         )
         # A resumed run has some already.
         finished = [scenario for scenario in results.scenarios if scenario.finished is not None]
-        self._held = sum(scenario.verdict is Outcome.HOLDS for scenario in finished)
-        self._failed = len(finished) - self._held
-        self._fails: set[int] = set()
+        self._ended = Counter(scenario.verdict for scenario in finished)
+        self._worst: dict[int, Outcome] = {}
         self._faults: dict[str, int] = {}
         self._printed: dict[int, list[str]] = {}
         self._task = self._progress.add_task("", total=self._total, completed=len(finished), counts=Text("starting"))
@@ -100,13 +101,13 @@ class Display:
         """Count a message on arrival, which may be before it is shown."""
         match message:
             case ScenarioStarted():
-                self._fails.discard(message.index)
-            case ClauseJudged() if message.verdict != Outcome.HOLDS:
-                self._fails.add(message.index)
+                self._worst.pop(message.index, None)
+            case ClauseJudged():
+                worst = self._worst.get(message.index, Outcome.HOLDS)
+                self._worst[message.index] = min(worst, Outcome(message.verdict), key=_BADNESS.index)
             case ScenarioFinished():
-                failed = message.index in self._fails
-                self._failed += failed
-                self._held += not failed
+                # Without any clause there is no evidence.
+                self._ended[self._worst.get(message.index, Outcome.UNKNOWN)] += 1
                 self._progress.update(self._task, counts=self._counts(), advance=1)
             case _:
                 pass
@@ -178,8 +179,14 @@ class Display:
         )
 
     def _counts(self) -> Text:
-        failed = (f"{self._failed} failed", STYLES[Outcome.VIOLATED] if self._failed else "")
-        return Text.assemble((f"{self._held} hold", STYLES[Outcome.HOLDS]), ", ", failed)
+        """Return the counts as the editor does: a violated scenario has failed, an unknown one has errored."""
+        failed, errored = self._ended[Outcome.VIOLATED], self._ended[Outcome.UNKNOWN]
+        return Text.assemble(
+            (f"{self._ended[Outcome.HOLDS]} hold", STYLES[Outcome.HOLDS]),
+            ", ",
+            (f"{failed} failed", STYLES[Outcome.VIOLATED] if failed else ""),
+            *([", ", (f"{errored} errored", STYLES[Outcome.UNKNOWN])] if errored else []),
+        )
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
         """Yield the name of each clause whose verdict proves little, and the reason, in the order of the model."""

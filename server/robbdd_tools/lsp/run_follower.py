@@ -149,9 +149,8 @@ class RunFollower:
             self._ls.show_results(self._text.places.uris)
 
     def _report_progress(self) -> None:
-        finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
-        failed = sum(scenario.verdict is not Outcome.HOLDS for scenario in finished)
-        self._progress.report(len(finished), failed, len(self._results.scenarios))
+        finished = (scenario for scenario in self._results.scenarios if scenario.finished is not None)
+        self._progress.report(Counter(scenario.verdict for scenario in finished), len(self._results.scenarios))
 
     def _outcome(self) -> str:
         words = f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"

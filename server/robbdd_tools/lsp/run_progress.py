@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
+
+from robbdd_tools.monitor.verdict import Outcome
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -33,10 +36,12 @@ class RunProgress:
         begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
         self._progress.begin(self._token, begin)
 
-    def report(self, done: int, failed: int, total: int) -> None:
-        """Report how many scenarios have finished, and how many of these did not hold."""
+    def report(self, ended: Mapping[Outcome, int], total: int) -> None:
+        """Report how many scenarios have ended; violated ones have failed, unknown ones have errored."""
         if self._is_shown:
-            words = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
+            done = sum(ended.values())
+            named = ((ended.get(Outcome.VIOLATED, 0), "failed"), (ended.get(Outcome.UNKNOWN, 0), "errored"))
+            words = ", ".join((f"{done}/{total} scenarios", *(f"{count} {name}" for count, name in named if count)))
             self._progress.report(
                 self._token, types.WorkDoneProgressReport(message=words, percentage=100 * done // total)
             )

@@ -10,7 +10,7 @@ from pathlib import Path
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.gherkin.feature import Numbered, every_scenario
+from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_pieces
 from robbdd_tools.gherkin.feature_files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.protocol.manifest_file import written_manifest
@@ -86,19 +86,27 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
 
     ``name`` is the name of that run in reports.
     """
-    parts: list[_Part] = []
     sources: dict[str, str] = {}
     for stale in (folder / FEATURES / "steps").glob(OWN_STEPS):
         stale.unlink()
     for number, request in enumerate(requests, start=1):
-        below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
-        plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
-        executions = request.chosen_executions()
-        parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
         steps = f"model_{number}_steps.py" if len(requests) > 1 else MODEL_STEPS
         sources |= copy_steps(request.name, folder, steps)
     head = Manifest(name, seed, (), traces, sources)
-    return replace(head, scenarios=tuple(_written(parts, head, folder)))
+    return replace(head, scenarios=tuple(_written(list(_parts_of(requests)), head, folder)))
+
+
+def specs_of(requests: Sequence[RunRequest]) -> Iterator[ScenarioSpec]:
+    """Yield the scenarios that ``prepare_all`` specifies, without writing files. They name no feature."""
+    return (spec for part in _parts_of(requests) for spec in part.unwritten_specs())
+
+
+def _parts_of(requests: Sequence[RunRequest]) -> Iterator[_Part]:
+    for number, request in enumerate(requests, start=1):
+        below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
+        plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
+        executions = request.chosen_executions()
+        yield from _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
 
 
 def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
@@ -150,9 +158,19 @@ class _Part:
         """Write the features of this part into the run folder ``folder`` and yield the scenarios to execute."""
         for written in written_scenarios(self.plan, folder / self.folder):
             feature = f"{self.folder}/{written.file.name}"
-            for spec in self.writer.specs(feature, written.story.iri, written.scenario, self.repeat):
-                if self.only is None or self.only(spec):
-                    yield spec
+            yield from self._chosen(feature, written.story, written.scenario)
+
+    def unwritten_specs(self) -> Iterator[ScenarioSpec]:
+        """Yield the scenarios to execute without writing their features, which they do not name."""
+        plan = self.plan
+        for story in plan.stories:
+            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):
+                if piece.scenario is not None:
+                    yield from self._chosen("", story, piece.scenario)
+
+    def _chosen(self, feature: str, story: Story, scenario: ScenarioText) -> Iterator[ScenarioSpec]:
+        specs = self.writer.specs(feature, story.iri, scenario, self.repeat)
+        return (spec for spec in specs if self.only is None or self.only(spec))
 
 
 def _parts(

@@ -5,7 +5,6 @@ evidence.
 from __future__ import annotations
 
 import hashlib
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -81,11 +80,9 @@ def _specs_now(
     repeat = max(spec.repetition for spec in manifest.scenarios)
     try:
         plan = Plan.of_files(file.name, uri_to_path(file.uri), (file,), selection_of(place, manifest, keys))
-        with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
-            found = plan.prepare(Path(folder), repeat=repeat if repeat > 1 else None).scenarios
+        return {scenario_key(spec): spec for spec in plan.specs(repeat=repeat if repeat > 1 else None)}
     except SelectionError:
         return {}
-    return {scenario_key(spec): spec for spec in found}
 
 
 def _changed_files(known: Mapping[str, str], folder: Path, drafts: Mapping[str, str]) -> str:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
-from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all
+from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all, specs_of
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
 from robbdd_tools.workbench.scene_choice import NOTHING_TO_PLACE, SceneChoiceError, in_instances, uses_instances
@@ -180,12 +180,19 @@ class Plan:
         If ``traces`` is true, the run keeps its traces.
         """
         chosen = self.selection.seed if seed is None else seed
-        requests = [_with(request, chosen, repeat) for request in self.requests]
+        requests = self._requests_with(chosen, repeat)
         own = self.selection.default_seed if chosen is None else chosen
         manifest = prepare_all(requests, self.name, own, folder, traces)
         if not manifest.scenarios:
             raise NothingSelected(NO_SCENARIO_FITS)
         return manifest
+
+    def specs(self, *, repeat: int | None = None) -> Iterator[ScenarioSpec]:
+        """Yield the scenarios as ``prepare`` does, without writing files. They name no feature."""
+        return specs_of(self._requests_with(self.selection.seed, repeat))
+
+    def _requests_with(self, seed: int | None, repeat: int | None) -> list[RunRequest]:
+        return [_with(request, seed, repeat) for request in self.requests]
 
 
 def _with(request: RunRequest, seed: int | None, repeat: int | None) -> RunRequest:
