@@ -21,6 +21,7 @@ import pytest
 
 from kit import MODEL, SCENE
 from robbdd_tools.base.checkpoint import Abandoned
+from robbdd_tools.base.memory import OLD, collect_recent
 from robbdd_tools.features import run_verdicts as results
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.semantic_tokens import semantic_tokens
@@ -60,6 +61,20 @@ def test_background_work_leaves_no_graph_behind() -> None:
     background = Background()
     left = asyncio.run(background.work({}, lambda _: weakref.ref(Cycle())))
     background.stop()
+    assert left() is None
+
+
+@pytest.mark.usefixtures("no_searches")
+def test_what_outlives_several_searches_is_freed_in_the_end() -> None:
+    cycle = Cycle()
+    left = weakref.ref(cycle)
+    for _ in range(3):
+        collect_recent()
+    del cycle
+    collect_recent()
+    assert left() is not None
+    for _ in range(OLD):
+        collect_recent()
     assert left() is None
 
 

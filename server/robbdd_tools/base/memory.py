@@ -29,9 +29,10 @@ def collect_recent() -> None:
     """Free the reference cycles among the objects made since the last search. This takes a few milliseconds.
 
     Every rdflib graph is a cycle. Call this function after work that builds graphs, because after ``collect_rarely``
-    they would accumulate.
+    they would accumulate. Every ``OLD``-th call searches all objects: so many explicit searches keep Python from doing
+    it, and a cycle that was in use during the call after it was made would stay for ever.
     """
-    gc.collect(1)
+    gc.collect(2 if gc.get_count()[2] >= OLD else 1)
 
 
 @contextmanager
