@@ -83,11 +83,18 @@ def serve(address: str) -> Request | None:
                     if request is None:
                         connection.close()
                         continue
-                    pid = os.fork()
+                    try:
+                        pid = os.fork()
+                    except OSError as error:  # no memory or no process left: this costs one launcher, not the server
+                        print(f"the fork server cannot fork: {error}", file=sys.stderr)
+                        pid = None
                     if pid == 0:
                         return request
                     for descriptor in request.descriptors:
                         os.close(descriptor)
+                    if pid is None:
+                        connection.close()
+                        continue
                     fork = Fork(pid, os.pidfd_open(pid), connection)
                     selector.register(connection, selectors.EVENT_READ, fork)
                     selector.register(fork.descriptor, selectors.EVENT_READ, fork)
