@@ -18,7 +18,7 @@ async def test_the_preview_follows_the_text_and_keeps_the_last_good_one(editor: 
     first = await preview_of(editor)
     assert first.problem is None
     lines = str(first.text).split("\n")
-    assert lines[:2] == ["# 4 scenarios", "@story=https:;;example.org;robbdd;criteria;tidy-bench"]
+    assert lines[:3] == ["# 4 scenarios", "# wording: 2", "@story=https:;;example.org;robbdd;criteria;tidy-bench"]
     place = next(entry for entry in first.lines if "is held by" in lines[entry.line])
     written: str = editor.text.split("\n")[int(place.range.start.line)]
     assert written.strip().startswith("in-hand: holds(")
