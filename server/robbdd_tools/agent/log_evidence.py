@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,33 +43,24 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     """Return the evidence of a log on a scenario.
 
     Positions are those of the log in the frame of the world; the origin of a frame is that of the element's model. The
-    trace has a sample at each observation of a frame that is used, at most ``request.rate`` per second, and at each
-    event. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model.
+    trace has a sample at each observation of a frame that is used, at most ``request.rate`` per second, at each event
+    and in each gap. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model.
     """
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
     cast = cast_scene(spec.scene, staging)
     remarks = list(contents.remarks)
-    frames = _frames(spec, cast, contents, request, remarks)
-    events, bounds = _events(spec, contents)
-    remarks += bounds
-    world = request.world.lstrip("/") or _root(frames.values(), contents, remarks)
-    times = _times(frames.values(), events, contents, request.rate, request.max_gap)
-    names: list[str] = []
-    positions: list[FloatArray] = []
-    turns: list[FloatArray] = []
-    for element in (*cast.objects, *cast.agents):
-        found = _poses(element, spec, frames, cast, contents, world, times, request.max_gap, remarks)
-        if found is not None:
-            names.append(element)
-            positions.append(found[0])
-            turns.append(found[1])
-    count = len(times)
+    events = _events(spec, contents, remarks)
+    frames = _Frames(spec, cast, contents, request, remarks)
+    times = _times(frames.used(), events, contents, request)
+    poses = {element: found for element in cast.objects if (found := frames.object_poses(element, times)) is not None}
+    poses |= {element: found for element in cast.agents if (found := frames.poses(element, times)) is not None}
+    names = tuple(poses)
     trace = Trace(
-        tuple(names),
+        names,
         times,
-        np.stack(positions, axis=1) if positions else np.empty((count, 0, 3)),
-        np.stack(turns, axis=1) if turns else np.empty((count, 0, 4)),
-        grips=_grips(cast, names, contents.texts, times, frames),
+        np.stack([place for place, _ in poses.values()], axis=1) if poses else np.empty((len(times), 0, 3)),
+        np.stack([turn for _, turn in poses.values()], axis=1) if poses else np.empty((len(times), 0, 4)),
+        grips=_grips(cast, names, frames, contents.texts, times),
         events=events,
         settings={pair: written(value) for pair, value in cast.judged.items()},
         outlines={name: outline_of(model) for name, model in cast.objects.items()},
@@ -81,118 +72,117 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 
 
-def _frames(
-    spec: ScenarioSpec, cast: Cast, contents: LogContents, request: LogRequest, remarks: list[str]
-) -> dict[str, str]:
-    """Return the frame of each element that has one."""
-    stated = {**stated_frames(spec), **request.frames}
-    found: dict[str, str] = {}
-    for element in (*cast.objects, *cast.agents):
-        try:
-            found[element] = frame_of(element, contents.tracks, stated)
-        except FramesProblem as problem:
-            if element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused:
-                remarks.append(str(problem))
-    return found
+class _Frames:
+    """The frames of a scenario's elements in a log, and their poses. ``remarks`` gets sentences on what is missing."""
 
+    def __init__(
+        self, spec: ScenarioSpec, cast: Cast, contents: LogContents, request: LogRequest, remarks: list[str]
+    ) -> None:
+        self._spec = spec
+        self._cast = cast
+        self._tracks = contents.tracks
+        self._max_gap = request.max_gap
+        self._remarks = remarks
+        self.of: dict[str, str] = {}
+        """Element → its frame."""
+        stated = {**stated_frames(spec), **request.frames}
+        for element in (*cast.objects, *cast.agents):
+            try:
+                self.of[element] = frame_of(element, contents.tracks, stated)
+            except FramesProblem as problem:
+                if element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused:
+                    remarks.append(str(problem))
+        self._world = request.world.lstrip("/") or self._root()
 
-def _root(frames: Iterable[str], contents: LogContents, remarks: list[str]) -> str:
-    """Return the frame without a parent that the frames have in common."""
-    roots: dict[str, str] = {}
-    for frame in frames:
+    def used(self) -> set[str]:
+        """Return the frames of elements, and those between them and their roots."""
+        found: set[str] = set()
+        for frame in self.of.values():
+            while frame in self._tracks and frame not in found:
+                found.add(frame)
+                frame = self._tracks[frame].parent
+        return found
+
+    def poses(self, element: str, times: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Return positions (n, 3) m and orientations (n, 4) of an element's frame; ``None`` if it has none."""
+        if element not in self.of:
+            return None
         try:
-            roots.setdefault(root_of(frame, contents.tracks), frame)
+            return poses_at(self.of[element], self._world, self._tracks, times, self._max_gap)
         except Unconnected as problem:
-            remarks.append(str(problem))
-    if len(roots) > 1:
-        listed = ", ".join(f"'{frame}' in '{root}'" for root, frame in roots.items())
-        remarks.append(f"the frames are not connected: {listed}; name the frame of the world with --world FRAME")
-    return next(iter(roots), "")
+            self._remarks.append(str(problem))
+            return None
+
+    def object_poses(self, element: str, times: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Return the poses of an object's centre: in the log or, if it is not there, in the ``.scenex``."""
+        if element in self.of:
+            found = self.poses(element, times)
+            if found is None:
+                return None
+            place, turn = found
+            return place - rotated(turn, np.tile(self._cast.objects[element].frame, (len(times), 1))), turn
+        pose = self._stated_pose(element)
+        if pose is None:
+            return None
+        self._remarks.append(f"{element} is not in the log, so it stands where the .scenex places it")
+        upright = (float(np.cos(pose.yaw / 2)), 0.0, 0.0, float(np.sin(pose.yaw / 2)))
+        return np.tile(pose.position, (len(times), 1)), np.tile(pose.rotation or upright, (len(times), 1))
+
+    def _stated_pose(self, element: str) -> Pose | None:
+        """Return the pose of an object that the ``.scenex`` states; ``None`` if it states none, or draws it."""
+        if self._spec.instance is None:
+            return None
+        # A pose that is drawn at random differs with another seed.
+        other = replace(self._cast, staging=Staging(self._spec.instance, self._spec.seed + 1))
+        pose = self._cast.pose(element)
+        return pose if pose == other.pose(element) else None
+
+    def _root(self) -> str:
+        """Return the frame without a parent that the frames have in common."""
+        roots: dict[str, str] = {}
+        for frame in self.of.values():
+            try:
+                roots.setdefault(root_of(frame, self._tracks), frame)
+            except Unconnected as problem:
+                self._remarks.append(str(problem))
+        if len(roots) > 1:
+            listed = ", ".join(f"'{frame}' in '{root}'" for root, frame in roots.items())
+            hint = "name the frame of the world with --world FRAME"
+            self._remarks.append(f"the frames are not connected: {listed}; {hint}")
+        return next(iter(roots), "")
 
 
-def _events(spec: ScenarioSpec, contents: LogContents) -> tuple[tuple[EventStamp, ...], list[str]]:
+def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
     """Return the events of a scenario in a log. Without a report, the scenario starts and ends with the log."""
     stamps: list[EventStamp] = []
-    remarks: list[str] = []
     for event, emitter in spec.events.items():
         times = occurrences_of(event, emitter, contents.texts)
-        if not times and emitter in (START, END):
+        if emitter not in (START, END):
+            stamps += (EventStamp(event, time, number) for number, time in enumerate(times, start=1))
+            continue
+        if not times:
             times = [0.0 if emitter == START else contents.end]
-            edge = "start" if emitter == START else "end"
-            remarks.append(f"the log does not report {event}: the {edge} of the log counts")
-        inner = emitter not in (START, END)
-        stamps += (EventStamp(event, time, number if inner else 0) for number, time in enumerate(times, start=1))
-    return tuple(sorted(stamps, key=lambda stamp: stamp.time)), remarks
+            remarks.append(f"the log does not report {event}: the {emitter.rpartition('-')[2]} of the log counts")
+        stamps += (EventStamp(event, time) for time in times)
+    return tuple(sorted(stamps, key=lambda stamp: stamp.time))
 
 
-def _times(
-    frames: Iterable[str], events: Iterable[EventStamp], contents: LogContents, rate: float, max_gap: float
-) -> FloatArray:
+def _times(used: Iterable[str], events: Iterable[EventStamp], contents: LogContents, request: LogRequest) -> FloatArray:
     """Return the times of the trace's samples, s.
 
-    These are the observations, thinned out to ``rate`` (Hz), the events, and one time in each gap.
+    These are the observations of the frames ``used``, thinned out to the largest rate, the messages on truths, the
+    events, and one time in each gap.
     """
-    used = _used(frames, contents)
-    moving = [track.times for frame, track in contents.tracks.items() if not track.static and frame in used]
+    moving = [contents.tracks[frame].times for frame in used if not contents.tracks[frame].static]
     seen = np.unique(np.concatenate([*moving, np.empty(0)]))
-    slots = np.floor(seen * rate)
+    slots = np.floor(seen * request.rate)
     kept = seen[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(seen) else seen
     reported = [found.times for found in contents.truths.values()]
     edges = [*(stamp.time for stamp in events), 0.0, contents.end]
     times = np.unique(np.concatenate([kept, *reported, edges]))
     # Without a sample in a gap, a clause would be judged across it.
-    long = np.diff(times) > max_gap
+    long = np.diff(times) > request.max_gap
     return np.unique(np.concatenate([times, (times[:-1] + times[1:])[long] / 2]))
-
-
-def _used(frames: Iterable[str], contents: LogContents) -> set[str]:
-    """Return the frames, and those between them and their roots."""
-    found: set[str] = set()
-    for frame in frames:
-        while frame in contents.tracks and frame not in found:
-            found.add(frame)
-            frame = contents.tracks[frame].parent
-    return found
-
-
-def _stated_pose(element: str, cast: Cast, spec: ScenarioSpec) -> Pose | None:
-    """Return the pose of an object that the ``.scenex`` states; ``None`` if it states none, or draws it at random."""
-    if spec.instance is None or element not in cast.objects:
-        return None
-    other = replace(cast, staging=Staging(spec.instance, spec.seed + 1))
-    pose = cast.pose(element)
-    return pose if pose == other.pose(element) else None
-
-
-def _poses(
-    element: str,
-    spec: ScenarioSpec,
-    frames: Mapping[str, str],
-    cast: Cast,
-    contents: LogContents,
-    world: str,
-    times: FloatArray,
-    max_gap: float,
-    remarks: list[str],
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return the poses of an element at some times: positions (n, 3) m and orientations (n, 4); ``None`` if unknown."""
-    if element in frames:
-        try:
-            place, turn = poses_at(frames[element], world, contents.tracks, times, max_gap)
-        except Unconnected as problem:
-            remarks.append(str(problem))
-            return None
-        if element in cast.objects:
-            offset = np.tile(cast.objects[element].frame, (len(times), 1))
-            place = place - rotated(turn, offset)
-        return place, turn
-    pose = _stated_pose(element, cast, spec)
-    if pose is None:
-        return None
-    remarks.append(f"{element} is not in the log, so it stands where the .scenex places it")
-    half = pose.yaw / 2
-    turned = pose.rotation or (float(np.cos(half)), 0.0, 0.0, float(np.sin(half)))
-    return np.tile(pose.position, (len(times), 1)), np.tile(turned, (len(times), 1))
 
 
 def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
@@ -202,22 +192,23 @@ def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
 
 
 def _grips(
-    cast: Cast, names: list[str], texts: Iterable[TextStamp], times: FloatArray, frames: Mapping[str, str]
+    cast: Cast, names: Sequence[str], frames: _Frames, texts: Iterable[TextStamp], times: FloatArray
 ) -> dict[str, FloatArray]:
-    """Return what each agent holds, as far as the log says it (``HOLDS``)."""
+    """Return the objects that each agent holds, (n, len(names)), for the agents about which the log reports it."""
     found: dict[str, FloatArray] = {}
-    known = {word: name for name in names for word in (name, local_name(name), frames.get(name, name))}
+    known = {word: name for name in names for word in (name, local_name(name), frames.of.get(name, name))}
     for agent in cast.agents:
         own = [one for one in texts if one.topic.strip("/").split("/")[-2:] == [local_name(agent), HOLDS]]
         if not own:
             continue
         record = np.zeros((len(times), len(names)))
-        for index, one in enumerate(own):
-            until = own[index + 1].time if index + 1 < len(own) else np.inf
-            held = known.get(one.text.strip())
-            if held is not None:
-                record[(times >= one.time) & (times < until), names.index(held)] = 1.0
         # Before its first message, it is unknown what the agent holds.
         record[times < own[0].time] = np.nan
+        for one, until in zip(own, [*(later.time for later in own[1:]), np.inf], strict=True):
+            rows = (times >= one.time) & (times < until)
+            if one.text.strip() in known:
+                record[rows, names.index(known[one.text.strip()])] = 1.0
+            elif one.text.strip():
+                record[rows] = np.nan
         found[agent] = record
     return found
