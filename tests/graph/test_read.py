@@ -10,6 +10,7 @@ from kit import MODEL
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
+    Condition,
     EventClause,
     Exists,
     Fluent,
@@ -70,7 +71,7 @@ def test_stories_and_variants_come_in_written_order() -> None:
 
 def test_clauses_come_back_as_they_were_written() -> None:
     template = variant("table").template
-    at, either, neither, config, text, first, second, behaviour, some = template.clauses
+    at, either, neither, config, slow, apart, _, text, first, second, behaviour, some = template.clauses
     assert (template.start, template.end) == t("start", "end")
     assert at == Fluent(
         n("at"),
@@ -93,6 +94,12 @@ def test_clauses_come_back_as_they_were_written() -> None:
     assert isinstance(config, Fluent)
     assert config.arguments == {"target": T + "var-robot", "name": "speed", "value": T + "var-speed"}
     assert not isinstance(config.arguments["name"], Iri)
+    assert isinstance(slow, Fluent)
+    assert slow.arguments == {"agent": T + "var-robot", "limit": "0.25 m/s"}
+    near = {"one": T + "var-robot", "distance": T + "var-near", "other": T + "var-goal"}
+    assert slow.condition == Condition(n("whenever-fetch.slow"), "is-nearer-than", near)
+    assert isinstance(apart, Fluent)
+    assert apart.arguments["distance"] == "3e-1 m"
     assert text == TextFluent(
         n("text"), "given", "{p} & {r}", {"p": n("var-part"), "r": n("var-robot")}, After(T + "end", 1.0)
     )
@@ -136,11 +143,11 @@ def test_a_variant_has_its_own_clauses_behind_the_templates() -> None:
 def test_a_table_keeps_rows_cells_and_types() -> None:
     table = variant("table").variation
     assert isinstance(table, Table)
-    assert table.variables == t("var-part", "var-robot", "var-goal", "var-speed", "var-goals")
+    assert table.variables == t("var-part", "var-robot", "var-goal", "var-speed", "var-near", "var-goals")
     assert table.rows == (
-        (*lab("nut", "ur10", "tray_ws"), 0.1, lab("bench_ws", "tray_ws")),
-        (*lab("bolt", "panda", "bench_ws"), "fast", lab("tray_ws", "bench_ws")),
-        (*lab("washer1", "panda", "bench_ws"), 2, ()),
+        (*lab("nut", "ur10", "tray_ws"), 0.1, "30 cm", lab("bench_ws", "tray_ws")),
+        (*lab("bolt", "panda", "bench_ws"), "fast", "0.3 m", lab("tray_ws", "bench_ws")),
+        (*lab("washer1", "panda", "bench_ws"), 2, "250 mm", ()),
     )
     assert [type(row[3]) for row in table.rows] == [float, str, int]
 
@@ -158,7 +165,8 @@ def test_a_product_keeps_choices_in_written_order() -> None:
     assert isinstance(brought, Product)
     assert brought.choices[0] == lab("washer0", "washer1", "washer2")
     assert repr(brought.choices[3]) == "(1, 1.0, '1')"
-    assert brought.choices[4] == Selection("permutations", lab("bench_ws", "tray_ws"), 2, False)
+    assert brought.choices[4] == ("30 cm", "0.3 m", "-.5e-1 m")
+    assert brought.choices[5] == Selection("permutations", lab("bench_ws", "tray_ws"), 2, False)
 
 
 def test_the_scene_of_a_variant_is_its_own_with_what_its_variation_brings() -> None:
@@ -174,9 +182,9 @@ def test_the_scene_of_a_variant_is_its_own_with_what_its_variation_brings() -> N
 def test_sets_kinds_and_prefixes_are_at_hand() -> None:
     found = model()
     assert repr(found.sets[Iri(OTHER + "mixed")]) == repr(
-        (3, -2.5, 1e21, 'a "word" <&> {x}', "Gruß", "two\nlines", LAB + "bench_ws", 3)
+        (3, "20 %", -2.5, 1e21, 'a "word" <&> {x}', "Gruß", "two\nlines", LAB + "bench_ws", 3)
     )
-    assert isinstance(found.sets[Iri(OTHER + "mixed")][6], Iri)
+    assert isinstance(found.sets[Iri(OTHER + "mixed")][7], Iri)
     assert found.kinds[Iri(LAB + "nut")] == "object"
     assert found.curie(LAB + "nut") == "env:nut"
     assert found.curie("https://example.org/taken/elsewhere") == "bdd:elsewhere"
