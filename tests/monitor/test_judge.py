@@ -188,3 +188,13 @@ def test_every_question_about_a_gap_is_refused(question: str) -> None:
 
     found = judge(replace(ABOVE, evaluate=asked), {"thing": "ball"}, ALL, trace, {})
     assert (found.outcome, found.cause) == (Outcome.UNKNOWN, Cause.UNOBSERVED)
+
+
+def test_at_some_time_holds_at_a_margin_of_zero() -> None:
+    assert at_some_time([-1.0, -0.3, 0.0, -0.1], 0.2).outcome is Outcome.HOLDS
+
+
+def test_the_margin_counts_samples_at_which_the_condition_may_hold() -> None:
+    trace = trace_of({"ball": heights([0.3, 0.1, 0.2]), "lid": heights([1.0, float("nan"), -1.0])}, {"start": 0.0})
+    found = judge(ABOVE, {"thing": "ball"}, After("start", 0.2), trace, {}, (ABOVE, {"thing": "lid"}))
+    assert (found.outcome, found.robustness) == (Outcome.HOLDS, 0.1)
