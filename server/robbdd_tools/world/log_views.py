@@ -59,8 +59,7 @@ def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     bodies = {str(model.body(body).name): body for body in range(1, model.nbody)}
-    observed = np.isfinite(trace.positions).all(axis=2).any(axis=0).tolist()
-    seen = [name for name, known in zip(trace.names, observed, strict=True) if known and name in bodies]
+    seen = [name for name in trace.names if name in bodies and _is_seen(trace, name)]
     drawn = {bodies[name]: name for name in seen}
     carried = {workspace: [box for box in boxes if box[0] in seen] for workspace, boxes in regions.items()}
     yield 0.0, "/geometry", geometry(model, drawn, carried)
@@ -75,6 +74,10 @@ def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]
         if time >= shown + PERIOD or row == len(trace.times) - 1:
             shown = time
             yield time, "/tf", {"transforms": _frames(time, seen, places[row].tolist(), turns[row].tolist())}
+
+
+def _is_seen(trace: Trace, name: str) -> bool:
+    return bool(np.isfinite(trace.positions[:, trace.column(name)]).any())
 
 
 def _last_known(values: FloatArray) -> FloatArray:
