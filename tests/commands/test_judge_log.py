@@ -215,6 +215,29 @@ def test_the_observations_and_topics_of_an_execution_decide(
     assert 0.1 < found["at-goal"]["robustness"] < 0.2
 
 
+@pytest.mark.parametrize(
+    ("root", "more", "verdict"),
+    [("map", (), "holds"), ("camera", (), "unknown"), ("camera", ("--world", "camera"), "holds")],
+)
+def test_a_scenex_places_what_the_log_lacks_if_the_frame_is_the_worlds(
+    root: str, more: tuple[str, ...], verdict: str, tmp_path: Path
+) -> None:
+    folder = shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "models")
+    # The bin stands at (0.4, 0.5, 0.1) m.
+    seen = [transform("cube0", (0.4, 0.5, 0.14), stamp=tick / 10, parent=root) for tick in range(101)]
+    bag = write(tmp_path / "drive", [*seen, text("place-end", 5.0)])
+    out = tmp_path / "log.json"
+    chosen = ("--scenario", "by-catalog", "--where", "thing=cube0")
+    done = robbdd(folder, "judge", str(bag), "tidy.bddx", "--no-store", "--json", str(out), *chosen, *more)
+    assert done.returncode in (0, 1), done.stderr
+    found = {one["name"].rpartition(".")[2]: one for one in clauses(out)}
+    assert found["at-goal"]["verdict"] == verdict, (found["at-goal"], done.stderr)
+    placed = "is not in the log, so it stands where the .scenex places it"
+    asked = "is not in the log, and the .scenex places it in the world: name the frame of the world with --world FRAME"
+    assert f"env:bin {placed if verdict == 'holds' else asked}" in done.stderr
+    assert "the log has no frame for env:cube0" not in done.stderr
+
+
 def test_a_log_of_several_scenarios_is_refused_with_their_values(models: Path, tmp_path: Path) -> None:
     bag = write(tmp_path / "drive", drive())
     done = robbdd(models, "judge", str(bag), "pickplace.bdd")

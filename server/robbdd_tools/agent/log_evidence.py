@@ -92,6 +92,7 @@ class _Frames:
             except FramesProblem as problem:
                 if element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused:
                     remarks.append(str(problem))
+        self._stated_world = bool(request.world)
         self._world = request.world.lstrip("/") or self._root()
 
     def used(self) -> set[str]:
@@ -124,6 +125,10 @@ class _Frames:
         pose = self._stated_pose(element)
         if pose is None:
             return None
+        if not self._is_world():
+            hint = "name the frame of the world with --world FRAME"
+            self._remarks.append(f"{element} is not in the log, and the .scenex places it in the world: {hint}")
+            return None
         self._remarks.append(f"{element} is not in the log, so it stands where the .scenex places it")
         upright = (float(np.cos(pose.yaw / 2)), 0.0, 0.0, float(np.sin(pose.yaw / 2)))
         return np.tile(pose.position, (len(times), 1)), np.tile(pose.rotation or upright, (len(times), 1))
@@ -136,6 +141,12 @@ class _Frames:
         other = replace(self._cast, staging=Staging(self._spec.instance, self._spec.seed + 1))
         pose = self._cast.pose(element)
         return pose if pose == other.pose(element) else None
+
+    def _is_world(self) -> bool:
+        """Return whether the frame in which poses are given is that of the ``.scenex``: by its name, or by the user."""
+        anchor = "" if self._spec.instance is None else self._spec.instance.anchor
+        names = {"world", "map", local_name(anchor)}
+        return self._stated_world or local_name(self._world).casefold() in names
 
     def _root(self) -> str:
         """Return the frame without a parent that the frames have in common."""

@@ -19,6 +19,10 @@ MIN_LENGTH = 0.5
 """Length from which four numbers are a quaternion that is only not normalised."""
 
 
+SAME = 1e-6
+"""Largest difference of positions (m) and quaternions that are the same pose, published again."""
+
+
 class UnreadableLog(RobbddError):
     """A file is not a log that can be read; the message names the file and the reason."""
 
@@ -114,8 +118,11 @@ class TrackBuilder:
         """Return the tracks, with times in s since ``begin`` (ns).
 
         Of several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion has no
-        length, are left out.
+        length, are left out. Raises ``UnreadableLog`` if a frame that never moves has different poses.
         """
+        for frame, poses in self._frames.items():
+            if poses.static and poses.differ():
+                raise UnreadableLog(f"frame '{frame}' has several static poses: its place is not known")
         found = {frame: poses.track(begin) for frame, poses in self._frames.items()}
         return {frame: track for frame, track in found.items() if len(track.times)}
 
@@ -128,6 +135,11 @@ class _Poses:
     static: bool = True
     times: array[int] = field(default_factory=lambda: array("q"))
     values: array[float] = field(default_factory=lambda: array("d"))
+
+    def differ(self) -> bool:
+        """Return whether the poses are not all the same."""
+        values = np.array(self.values).reshape(-1, 7)
+        return bool(np.ptp(values, axis=0).max(initial=0.0) > SAME)
 
     def track(self, begin: int) -> Track:
         stamps, values = np.array(self.times, dtype=np.int64), np.array(self.values).reshape(-1, 7)
