@@ -84,7 +84,7 @@ def test_the_criteria_of_the_paper_are_judged_and_the_text_among_them_is_known_b
     (found,) = [one for one in model.diagnostics if one.severity < robbdd.Severity.INFORMATION]
     assert (found.code, found.place.line) == ("no-evaluator", 55)
     with Plan.of(model, Selection()).run(seed=1, keeping=Keeping(keep=False)) as run:
-        picked, _, placed, _ = ([clause.verdict for clause in result.clauses] for result in run)
+        picked, _, placed, _ = ([clause.verdict for clause in result.clauses] for result in run.results)
     assert picked == ["holds"] * 4
     assert placed == [*["holds"] * 4, "unknown"]
 

@@ -79,11 +79,13 @@ def _graph(project: Project, name: str) -> BuiltGraph:
 
 
 def _first_error(project: Project, scene_name: str) -> str | None:
-    """Return the first syntax error or unresolved name of a written text with its line, or ``None``."""
+    """Return the first error of a written text with its line, or ``None``."""
+    from robbdd_tools.features.diagnostics import fast_diagnostics
+
     snapshot = project.snapshot()
     for name in (scene_name, _MODEL):
         file = snapshot.file(_FOLDER + name)
-        for finding in file.diagnostics if file is not None else ():
+        for finding in fast_diagnostics(snapshot, _FOLDER + name):
             if finding.severity is Severity.ERROR:
                 line = file.document.line_text(file.document.position(finding.span.start).line) if file else ""
                 return f"{finding.message}, in '{line.strip()}'"

@@ -245,8 +245,14 @@ export class Workbench {
   async #ask(key, text) {
     // What was asked before may still be going away, and take the key for itself.
     await this.page.locator(".quick-input-widget").waitFor({ state: "hidden" });
-    await this.page.keyboard.press(key);
-    await this.page.locator(QUICK_INPUT).fill(text);
+    const input = this.page.locator(QUICK_INPUT);
+    await eventually(async () => {
+      // A page that comes to the front takes the key, or the focus from the input, which then goes away.
+      if (!(await input.isVisible())) {
+        await this.page.keyboard.press(key);
+      }
+      await input.fill(text, { timeout: TRY });
+    });
   }
 
   /** The entry of the quick input's list that Enter takes, if its label has this text. */
