@@ -66,13 +66,14 @@ step("the replay can be read in high contrast, and is played by the keyboard", a
   await page.locator(".label", { hasText: "ball" }).waitFor();
   await inBoth("replay", page.locator(".title, .label, .row .text, .row .sign, .caption p, .tracks text, header button:enabled, .readout"));
   await workbench.focusPanel(page);
-  await tabTo("header button");
-  await workbench.page.keyboard.press("Space");
-  await page.getByRole("button", { name: "Play or pause" }).filter({ hasText: "⏸" }).waitFor();
-  await workbench.page.keyboard.press("Space");
+  // From the violation, it would play for a second only, which a slow machine may miss.
   await tabTo(".slider");
   await workbench.page.keyboard.press("Home");
   await page.locator(".readout").filter({ hasText: /^0\.00/ }).waitFor();
+  await tabTo("header button:first-of-type", "Shift+Tab");
+  await workbench.page.keyboard.press("Space");
+  await page.getByRole("button", { name: "Play or pause" }).filter({ hasText: "⏸" }).waitFor();
+  await workbench.page.keyboard.press("Space");
   await tabTo(".stage");
   const before = await page.locator(".label", { hasText: "ball" }).getAttribute("style");
   await workbench.page.keyboard.press("ArrowRight");
