@@ -11,12 +11,10 @@ from contextlib import suppress
 from itertools import count
 from typing import TYPE_CHECKING
 
-from lsprotocol import types
-from pygls.exceptions import JsonRpcException
-
 from robbdd_tools.base.interpreter import start_worker
 from robbdd_tools.base.limits import VALIDATION_SECONDS
 from robbdd_tools.lsp.framing import LENGTH, Edited, Execution, Rejudged, frame
+from robbdd_tools.lsp.work_done import WorkDone
 
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import RejudgedExecution
@@ -54,7 +52,7 @@ class Rejudging:
         self._starting = asyncio.Lock()
         self._waiting: asyncio.Task[None] | None = None
         self._edited: dict[str, None] = {}
-        self._progress: _Progress | None = None
+        self._progress: WorkDone | None = None
         self._watch: asyncio.TimerHandle | None = None
         self._stopped = False
 
@@ -170,8 +168,11 @@ class Rejudging:
         if rejudged.is_last and not self._asked:
             self._end_progress()
         elif rejudged.total > SHOWN_ABOVE:
-            self._progress = self._progress or _Progress(self._server, f"robbdd-rejudge-{rejudged.revision}")
-            await self._progress.report(rejudged.done, rejudged.total)
+            progress = self._progress or WorkDone(self._server, f"robbdd-rejudge-{rejudged.revision}")
+            self._progress = progress
+            await progress.begin("Re-judging stored traces")
+            words = f"{rejudged.done:,} of {rejudged.total:,} executions"
+            progress.report(words, rejudged.done, rejudged.total)
 
     def _replace(self, model: str, executions: dict[Execution, RejudgedExecution]) -> None:
         if executions != self.executions.get(model, {}):
@@ -183,7 +184,7 @@ class Rejudging:
             self._watch.cancel()
         progress, self._progress = self._progress, None
         if progress is not None:
-            progress.end()
+            progress.end("re-judged, not executed")
 
     def _watch_it(self) -> None:
         """Restart the time limit of the next answer."""
@@ -195,41 +196,3 @@ class Rejudging:
         if self._asked:
             _LOG.error("re-judging took longer than %s seconds and was given up", VALIDATION_SECONDS.value())
             self._end_process()
-
-
-class _Progress:
-    """Work-done progress of the protocol. Nothing is sent to a client that does not support it or refuses it."""
-
-    def __init__(self, server: RobbddServer, token: str) -> None:
-        self._progress = server.work_done_progress
-        self._token = token
-        window = server.client_capabilities.window
-        self._is_shown = bool(window is not None and window.work_done_progress)
-        self._began = False
-
-    async def report(self, done: int, total: int) -> None:
-        """Report how many executions have been judged."""
-        if not self._began and self._is_shown:
-            await self._begin()
-        if self._is_shown:
-            words = f"{done:,} of {total:,} executions"
-            report = types.WorkDoneProgressReport(message=words, percentage=100 * done // total)
-            self._progress.report(self._token, report)
-
-    async def _begin(self) -> None:
-        try:
-            # pygls does not declare the type of the client's (empty) answer.
-            await self._progress.create_async(self._token)  # pyright: ignore[reportUnknownMemberType]
-        except JsonRpcException:
-            self._is_shown = False
-            return
-        self._began = True
-        begin = types.WorkDoneProgressBegin(title="Re-judging stored traces", percentage=0)
-        self._progress.begin(self._token, begin)
-
-    def end(self) -> None:
-        """End the progress."""
-        if self._began:
-            self._progress.end(self._token, types.WorkDoneProgressEnd(message="re-judged, not executed"))
-        # pygls keeps tokens forever, and does not declare the type of their values.
-        self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]
