@@ -14,6 +14,7 @@ from lsprotocol import types
 
 import robbdd_tools as robbdd
 from lsp_kit import PATIENCE, Editor, plain
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
 
 pytestmark = pytest.mark.physics
@@ -135,6 +136,27 @@ async def test_a_run_replaces_what_was_rejudged_clauses(judged: Editor) -> None:
     await judged.client.workspace_execute_command_async(types.ExecuteCommandParams("robbdd.run", [target]))
     assert MARK not in await hint(judged, "at-goal", "✗ 0/2")
     await judged.diagnostics("clause-violated")
+
+
+async def test_a_setting_turns_it_off_and_on(judged: Editor) -> None:
+    await hint(judged, "at-goal", "✔ 2/2")
+    judged.change(GOAL, EARLY)
+    await hint(judged, "at-goal", "✗ 2 flipped")
+    set_rejudge(judged, wanted=False)
+    assert (await hint(judged, "at-goal", "✔ 2/2")).endswith("(stale)")
+    await judged.diagnostics()
+    judged.change(EARLY, LATE)
+    assert (await hint(judged, "at-goal", "✔ 2/2")).endswith("(stale)")
+    set_rejudge(judged, wanted=True)
+    assert (await hint(judged, "at-goal", "? 0 of 2")).endswith(MARK)
+
+
+def set_rejudge(editor: Editor, *, wanted: bool) -> None:
+    """Change the setting ``robbdd.rejudge`` in the client."""
+    settings = {"robbdd": {"rejudge": wanted}}
+    editor.client.set_configuration(settings)
+    editor.client.set_configuration(settings, scope_uri=path_to_uri(editor.path.parent))
+    editor.client.workspace_did_change_configuration(types.DidChangeConfigurationParams(settings=settings))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="finds the process in /proc")

@@ -32,11 +32,13 @@ class FolderSettings:
     - ``shapes``: file patterns of SHACL shapes, relative to the folder.
     - ``bhv``: maps implementations of behaviours to the catalog behaviours that runs execute instead.
     - ``scenex``: paths of ``.scenex`` files, relative to the folder, for scenarios without an execution.
+    - ``rejudge``: whether each edit of a clause is judged on stored traces.
     """
 
     shapes: tuple[str, ...] = ()
     bhv: Mapping[str, str] = field(default_factory=dict[str, str])
     scenex: tuple[str, ...] = ()
+    rejudge: bool = True
 
     def read(self, section: object) -> tuple[FolderSettings, str | None]:
         """Read the section ``robbdd`` of a folder's settings. Return them with a description of the first error.
@@ -46,7 +48,9 @@ class FolderSettings:
         stated = _entries(section) or {}
         run = _entries(stated.get("run")) or {}
         shapes, bhv, scenex = _texts(stated.get("shapes")), _named_texts(run.get("bhv")), _texts(run.get("scenex"))
-        problem = None
+        problem, rejudge = None, stated.get("rejudge", True)
+        if not isinstance(rejudge, bool):
+            problem, rejudge = "The setting 'robbdd.rejudge' is true or false.", self.rejudge
         if scenex is None or not all(path.endswith(".scenex") for path in scenex):
             scenex = self.scenex
             problem = "The setting 'robbdd.run.scenex' is a list of .scenex files, such as [\"cell.scenex\"]."
@@ -58,6 +62,7 @@ class FolderSettings:
             self.shapes if shapes is None else shapes,
             self.bhv if bhv is None else bhv,
             scenex,
+            rejudge,
         )
         return found, problem
 
@@ -113,6 +118,10 @@ class Settings:
         """Return the settings for runs of a document."""
         folder, settings = self._of(uri)
         return RunDefaults(settings.bhv, tuple((folder or Path()) / path for path in settings.scenex))
+
+    def rejudges(self, uri: str) -> bool:
+        """Return whether edits of a document are judged on stored traces."""
+        return self._of(uri)[1].rejudge
 
     def shapes(self, uri: str) -> EditorShapes:
         """Return the file patterns of the shapes that the editor adds for a document.
@@ -182,5 +191,6 @@ async def read_settings(ls: RobbddServer) -> None:
     )
     for problem in problems:
         ls.warn(problem, types.MessageType.Warning)
+    ls.rejudging.settings_changed()
     if ls.settings.patterns != before:
         await ls.settings_changed()

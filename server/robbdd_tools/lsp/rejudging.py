@@ -72,6 +72,15 @@ class Rejudging:
         for uri in self._server.opened():
             self.edited(uri, opened=True)
 
+    def settings_changed(self) -> None:
+        """Remove what was judged where the setting ``robbdd.rejudge`` is off now, and judge where it is on."""
+        for model in [uri for uri in self.executions if not self._server.settings.rejudges(uri)]:
+            self._asked.pop(model, None)
+            self._replace(model, {})
+        if not self._asked:
+            self._end_progress()
+        self.results_changed()
+
     def stop(self) -> None:
         """Judge nothing more."""
         self._stopped = True
@@ -106,7 +115,7 @@ class Rejudging:
         """Return the numbers of all shown executions that are stored, by their model and their run."""
         found: dict[str, dict[int, list[int]]] = {}
         for scenario in self._server.results:
-            if scenario.run and scenario.finished:
+            if scenario.run and scenario.finished and self._server.settings.rejudges(scenario.model):
                 found.setdefault(scenario.model, {}).setdefault(scenario.run, []).append(scenario.index)
         return found
 
