@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
+from kit import write_manifest
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.protocol.messages import (
@@ -17,8 +19,10 @@ from robbdd_tools.protocol.messages import (
     ScenarioFinished,
     ScenarioStarted,
 )
-from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec, SceneSpec
-from robbdd_tools.run.store import RunRecord
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
+from robbdd_tools.run.recording import Recording
+from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.store import RunRecord, RunStore, StoredRun
 
 RECORD = RunRecord("m.bdd", "../../../m.bdd", "abc", 1, "0.1.0")
 CLAUSES = tuple(ClauseSpec(line, f"https://x/c{line}", f"c{line}", "then", f'"e:a" {line}') for line in (5, 6))
@@ -45,6 +49,26 @@ def execution(index: int, verdict: str = "holds") -> Iterator[RunMessage]:
     yield ScenarioFinished(
         index, 4.25, 1.5, 0.5, index, (Contact("e:arm", "", "e:shelf", 1.5, 12.0, 1.6, 0.25),) * index
     )
+
+
+def record_run(
+    store: RunStore, margins: Sequence[float | None], *, clauses: tuple[ClauseSpec, ...] = CLAUSES[:1], seed: int = 1
+) -> StoredRun:
+    """Record a run with one execution per margin (m) of its clauses; ``None`` is an unknown verdict."""
+    specs = tuple(replace(spec(index), clauses=clauses, seed=seed) for index in range(len(margins)))
+    place, manifest, record = store.begin(), Manifest("m.bdd", seed, specs, True), replace(RECORD, seed=seed)
+    write_manifest(place.folder, manifest)
+    place.write_record(record)
+    with closing(Recording(place, manifest)) as recording:
+        recording.begin(record, Policy(), "prepared")
+        for index, margin in enumerate(margins):
+            recording.take(ScenarioStarted(index))
+            verdict = "unknown" if margin is None else "holds" if margin > 0 else "violated"
+            for clause in clauses:
+                recording.take(ClauseJudged(index, clause.line, verdict, margin, "m", None, f"{margin}", None))
+            recording.take(ScenarioFinished(index, 4.25, 1.5, 0.5))
+        recording.end("")
+    return place
 
 
 def rows(database: Path, number: int) -> list[object]:

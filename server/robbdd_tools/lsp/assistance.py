@@ -14,7 +14,7 @@ from robbdd_tools.features.hover import Hover, hover
 from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
-from robbdd_tools.lsp.result_hover import pictures_of, replay_link
+from robbdd_tools.lsp.result_hover import history_line, pictures_of, replay_link
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
@@ -79,7 +79,8 @@ def _register_hover(server: RobbddServer) -> None:
             # Keep hovers short: the most important content comes directly below the title.
             title, _, rest = markdown.partition("\n\n")
             title = " · ".join(filter(None, (title, link)))
-            markdown = "\n\n".join(filter(None, (title, pictures, rest)))
+            history = await asyncio.to_thread(history_line, ls.stores, found.judged, link=ls.shows_history)
+            markdown = "\n\n".join(filter(None, (title, pictures, rest, history)))
         client = ls.client_capabilities.text_document
         formats = client.hover.content_format if client is not None and client.hover is not None else None
         return types.Hover(contents=markup(markdown, formats), range=place)

@@ -21,6 +21,7 @@ from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.pull_diagnostics import can_pull, register_pull
+from robbdd_tools.lsp.run_history import register_run_history
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
@@ -50,6 +51,7 @@ def create_server() -> RobbddServer:
     register_preview(server)
     register_graph(server)
     register_stored_runs(server)
+    register_run_history(server)
     register_projects(server)
     register_tests(server)
     register_test_results(server)
@@ -63,6 +65,7 @@ def _register_documents(server: RobbddServer) -> None:
         able = cast("dict[str, object]", wanted) if isinstance(wanted, dict) else {}
         ls.shows_pictures = able.get("pictures") is True
         ls.shows_replays = able.get("replay") is True
+        ls.shows_history = able.get("history") is True
         ls.trusted = able.get("trusted") is not False
         if not ls.trusted:
             forbid_user_code()

@@ -8,12 +8,15 @@ from __future__ import annotations
 import json
 import logging
 from base64 import b64encode
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from robbdd_tools.base.files import file_state, load_bytes, path_to_uri
+from robbdd_tools.features.markdown import literal
+from robbdd_tools.features.rejudged_results import SIGNS
 from robbdd_tools.protocol.run_folder import thumbnail_file
+from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.json_documents import NoTrace, stored_curves
 from robbdd_tools.run.pictures import NoPictures, render_thumbnails
 from robbdd_tools.run.plot import plot
@@ -26,11 +29,13 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.run_stores import Stores
     from robbdd_tools.run.store import RunStore, StoredRun
 
-REPLAY = "robbdd.showReplay"
-"""Command of clients that announce it."""
+REPLAY, HISTORY = "robbdd.showReplay", "robbdd.showHistory"
+"""Commands of clients that announce them."""
 THUMBNAILS = "thumbnails"
 LARGEST = 60_000
 """Maximum bytes of an embedded picture; clients read a hundred thousand characters of a text."""
+MAX_RUNS = 8
+"""Maximum number of runs whose verdicts on a clause are listed."""
 MAX_PICTURES = 8
 """Maximum number of clauses of a run whose worst violation is pictured."""
 _LOG = logging.getLogger(__name__)
@@ -51,12 +56,40 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
 
 def replay_link(judged: Judged) -> str:
     """Return a Markdown link that replays the execution of a result; empty if there is no stored run."""
-    scenario, judgement = judged
+    scenario = judged[0]
     if not scenario.run:
         return ""
-    clause = next((iri for iri, found in scenario.clauses.items() if found is judgement), None)
-    target = {"uri": scenario.model, "run": scenario.run, "index": scenario.index, "clause": clause}
-    return f"[Replay](command:{REPLAY}?{quote(json.dumps([target]))})"
+    target = {"uri": scenario.model, "run": scenario.run, "index": scenario.index, "clause": _clause_of(judged)}
+    return f"[Replay]({_command(REPLAY, target)})"
+
+
+def history_line(stores: Stores, judged: Judged, *, link: bool) -> str:
+    """Return the verdicts of the latest runs on the clause of a result, as a line of Markdown, the newest run first.
+
+    Empty if fewer than two stored runs judged it. With ``link``, the line ends with a link to the whole history.
+    """
+    scenario, judgement = judged
+    clause = _clause_of(judged)
+    try:
+        runs = [] if clause is None else stores.history(scenario.model, clause)
+    except DatabaseProblem:
+        return ""
+    if len(runs) < 2:
+        return ""
+    latest = [f"{SIGNS[run.verdict]} {run.holding}/{run.total} (run {run.run})" for run in runs[: -MAX_RUNS - 1 : -1]]
+    more = [f"{len(runs) - MAX_RUNS} more"] if len(runs) > MAX_RUNS else []
+    target = {"uri": scenario.model, "clause": clause}
+    links = [f"[History]({_command(HISTORY, target)})"] if link else []
+    return f"Runs of {literal(judgement.name)}: {' · '.join((*latest, *more, *links))}"
+
+
+def _clause_of(judged: Judged) -> str | None:
+    scenario, judgement = judged
+    return next((iri for iri, found in scenario.clauses.items() if found is judgement), None)
+
+
+def _command(name: str, target: Mapping[str, object]) -> str:
+    return f"command:{name}?{quote(json.dumps([target]))}"
 
 
 def _run_of(store: RunStore, scenario: JudgedScenario) -> StoredRun:

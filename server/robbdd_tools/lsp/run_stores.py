@@ -7,9 +7,14 @@ import tempfile
 from pathlib import Path
 from threading import Lock
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import file_state, path_to_uri, uri_to_path
+from robbdd_tools.run.clause_history import ClauseRun, clause_history
+from robbdd_tools.run.database import LOG
 from robbdd_tools.run.json_documents import traced_variants
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root, store_beside
+
+MAX_HISTORIES = 200
+"""Number of clauses whose history is kept in memory."""
 
 
 class Stores:
@@ -19,6 +24,7 @@ class Stores:
         self._own: dict[Path | None, RunStore] = {}
         self._folder: Path | None = None
         self._lock = Lock()
+        self._histories: dict[tuple[Path, str], tuple[object, list[ClauseRun]]] = {}
         self._traced: dict[Path, tuple[tuple[str, int], frozenset[str]]] = {}
 
     def of(self, uri: str) -> RunStore:
@@ -35,6 +41,21 @@ class Stores:
         A run is read again only if its results have changed.
         """
         return frozenset[str]().union(*map(self._traced_in, self.of(uri).runs()))
+
+    def history(self, uri: str, clause: str) -> list[ClauseRun]:
+        """Return the runs in the store of a document that judged a clause, oldest first. Raises ``DatabaseProblem``.
+
+        The database is read again only if it has changed.
+        """
+        database = self.of(uri).database
+        files = (database, database.with_name(database.name + LOG))
+        now = tuple(file_state(path_to_uri(file)) for file in files)
+        known = self._histories.get((database, clause))
+        if known is None or known[0] != now:
+            if len(self._histories) >= MAX_HISTORIES:
+                self._histories.clear()
+            known = self._histories[database, clause] = (now, clause_history(database, clause))
+        return known[1]
 
     def _traced_in(self, run: StoredRun) -> frozenset[str]:
         try:

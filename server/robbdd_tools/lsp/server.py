@@ -77,6 +77,8 @@ class RobbddServer(LanguageServer):
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
         """Whether the client has the command ``robbdd.showReplay``, also in Markdown links."""
+        self.shows_history = False
+        """Whether the client has the command ``robbdd.showHistory``, also in Markdown links."""
         self._connection: Connection | None = None
         self._shapes = ShapeFindings()
         self._analysis = AnalysisThread()

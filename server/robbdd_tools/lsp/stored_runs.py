@@ -19,6 +19,7 @@ from robbdd_tools.lsp.document_models import feature_plan
 from robbdd_tools.lsp.locations import places_of
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.variant_places import variants_of
+from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.json_documents import NoTrace, find_trace, scenarios, summary, trace_document
 from robbdd_tools.run.store import NoSuchRun, RunStore
 
@@ -37,7 +38,7 @@ def register_stored_runs(server: RobbddServer) -> None:
     async def runs(ls: RobbddServer, params: Any) -> dict[str, Any]:
         asked = Parameters(params)
         uri = asked.text("uri")
-        return await _answered(lambda: _runs(ls.stores.of(uri), asked))
+        return await answered(lambda: _runs(ls.stores.of(uri), asked))
 
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
@@ -50,7 +51,7 @@ def register_stored_runs(server: RobbddServer) -> None:
 
         asked = Parameters(params)
         uri = asked.text("uri")
-        found = await _answered(lambda: _trace(ls.stores.of(uri), asked))
+        found = await answered(lambda: _trace(ls.stores.of(uri), asked))
         files, scenario = list(dict.fromkeys([uri, found.pop("model")])), found["scenario"]
         placed, sentences = await ls.in_background(lambda snapshot: (places(snapshot), now(snapshot)))
         for clause in found["clauses"]:
@@ -96,9 +97,9 @@ def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: i
     return set()
 
 
-async def _answered(work: Callable[[], Result]) -> Result:
+async def answered(work: Callable[[], Result]) -> Result:
     """Execute work in a thread. If there is nothing to show, the user gets the reason as an error response."""
     try:
         return await asyncio.to_thread(work)
-    except (NoTrace, NoSuchRun) as error:
+    except (NoTrace, NoSuchRun, DatabaseProblem) as error:
         raise JsonRpcException(str(error), int(types.LSPErrorCodes.RequestFailed)) from error
