@@ -92,6 +92,11 @@ def test_elements_tell_what_simulates_them() -> None:
         ("before <pick-start>)", "be$0fore <pick-start>)", "Judged at the last sample at or before `pick-start`."),
         ("before <pick-start>)", "2 sec$0onds before <pick-start>)", "Judged throughout the 2 s that end at"),
         ("before <pick-start>)", "fr$0om <pick-start> until <end>)", "from `pick-start` until `end`, both included"),
+        (
+            "before <pick-start>)",
+            "with$0in <part> seconds before <pick-start>)",
+            "at some time in the <part> s that end",
+        ),
         ("before <pick-start>)", "with$0in 2 seconds before <pick-start>)", "at some time in the 2 s that end at"),
         ("before <pick-start>)", "at so$0me time from <pick-start> until <end>)", "it must hold at some time."),
     ],

@@ -57,6 +57,7 @@ Scenario Template (ns=t) sort {
     set var parts
     set var bins
     var robot
+    var wait
     for all ( var x in <parts> ) {
         Given: seen: holds(<robot> can reach <x>, before <pick-start>)
         for all ( var b in <places> ) {
@@ -65,7 +66,11 @@ Scenario Template (ns=t) sort {
             Then: taken: holds(<x> is held by <robot>, after <place-end>)
         }
     }
-    Then: sorted: holds(<parts> are sorted into <bins>, after <end>)
+    Then:
+        sorted: holds(<parts> are sorted into <bins>, after <end>)
+        stays: holds(<parts> are sorted into <bins>, <wait> seconds after <end>)
+        in-time: holds(<parts> are sorted into <bins>, within <wait> seconds before <end>)
+        "calm" <wait> seconds after <end>
 }
 User Story (ns=other_names) zz-first {
     As A "operator" I Want "parts" So That "work goes on"
@@ -91,6 +96,7 @@ User Story (ns=other_names) zz-first {
                 set var <sort.parts>: select 2 repeated combinations from <parts>
                 set var <sort.bins>: { { <places.tray_ws> }, { <places.bench_ws>, <places.tray_ws> } }
                 var <sort.robot>: { <arms.ur10>, <arms.panda> }
+                var <sort.wait>: { 1, 2.5 }
         }
 }
 User Story (ns=t) aa-second {
@@ -103,6 +109,7 @@ User Story (ns=t) aa-second {
                 set var <sort.parts>: select 1 permutations from <washers>
                 set var <sort.bins>: select 1 combinations from <places>
                 var <sort.robot>: agn set <arms>
+                var <sort.wait>: { 0.5 }
         }
         Scenario brought {
             template: <fetch>

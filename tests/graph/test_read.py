@@ -122,7 +122,7 @@ def test_clauses_come_back_as_they_were_written() -> None:
 
 
 def test_quantifiers_nest() -> None:
-    outer, _ = variant("product").template.clauses
+    outer, *_ = variant("product").template.clauses
     assert isinstance(outer, ForAll)
     _, inner = outer.clauses
     assert isinstance(inner, ForAll)
@@ -131,6 +131,15 @@ def test_quantifiers_nest() -> None:
     assert isinstance(behaviour, BehaviourClause)
     assert behaviour.behaviour == "pick"
     assert isinstance(taken, Fluent)
+
+
+def test_a_horizon_is_a_variable() -> None:
+    _, _, stays, in_time, text = variant("product").template.clauses
+    assert isinstance(stays, Fluent)
+    assert isinstance(in_time, Fluent)
+    assert isinstance(text, TextClause)
+    assert [clause.seconds for clause in (stays, in_time, text)] == [Iri(f"{T}var-wait")] * 3
+    assert (stays.time, in_time.time) == (After(f"{T}end"), Before(f"{T}end", some_time=True))
 
 
 def test_a_variant_has_its_own_clauses_behind_the_templates() -> None:
@@ -154,11 +163,12 @@ def test_a_table_keeps_rows_cells_and_types() -> None:
 
 def test_a_product_keeps_choices_in_written_order() -> None:
     assert variant("product").variation == Product(
-        t("var-parts", "var-bins", "var-robot"),
+        t("var-parts", "var-bins", "var-robot", "var-wait"),
         (
             Selection("combinations", lab("bolt", "nut"), 2, True),
             (lab("tray_ws"), lab("bench_ws", "tray_ws")),
             lab("ur10", "panda"),
+            (1, 2.5),
         ),
     )
     brought = variant("brought").variation

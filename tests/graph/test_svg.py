@@ -52,7 +52,7 @@ def test_every_concept_of_a_story_is_there_once() -> None:
 
 def test_a_clause_reads_as_it_is_written() -> None:
     texts = {"".join(f"{line} " for line in group.itertext()) for group in nodes(MODEL)}
-    assert any("in-tray part is located at goal within 0.5 s after place-end" in text for text in texts)
+    assert any("in-tray part is located at goal for 0.5 s after place-end" in text for text in texts)
     assert any("robot picks part and places at goal from pick-start until place-end" in text for text in texts)
 
 

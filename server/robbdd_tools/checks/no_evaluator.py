@@ -110,7 +110,7 @@ def _time_words(time: tree.TimeConstraint) -> str:
     if isinstance(time, tree.During):
         return interval_words("x", "x", time.some_time)
     relation = "before" if isinstance(time, tree.Before) else "after"
-    seconds = None if time.horizon is None else f"{time.horizon.value:g}"
+    seconds = f"{time.horizon.value:g}" if isinstance(time.horizon, tree.Number) else time.horizon and "1"
     return instant_words(relation, "x", seconds, time.some_time)
 
 

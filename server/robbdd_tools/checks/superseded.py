@@ -18,7 +18,13 @@ SUPERSEDED = {
     "repeated-value": ("shacl-variable-repeated",),
     "row-width": ("shacl-row-width",),
     "selection-size": ("shacl-selection-size", "shacl-selection-length"),
-    "type-conflict": ("shacl-object-value", "shacl-workspace-value", "shacl-agent-value", "shacl-element-value"),
+    "type-conflict": (
+        "shacl-object-value",
+        "shacl-workspace-value",
+        "shacl-agent-value",
+        "shacl-element-value",
+        "shacl-horizon-number",
+    ),
 }
 """Code of a rule → codes of the shapes that report the same mistake."""
 

@@ -29,7 +29,7 @@ def time_words(time: tree.TimeConstraint) -> str:
         return f"{'at some time ' if time.some_time else ''}from {time.start.path} until {time.end.path}"
     word = "before" if isinstance(time, tree.Before) else "after"
     lead = "at some time within " if time.some_time else "for "
-    horizon = "" if time.horizon is None else f"{lead}{time.horizon.value} seconds "
+    horizon = "" if time.horizon is None else f"{lead}{_seconds(time.horizon)} seconds "
     return f"{horizon}{word} {time.event.path}"
 
 
@@ -45,10 +45,14 @@ def time_meaning(time: tree.TimeConstraint) -> str:
     ends = "that end at" if isinstance(time, tree.Before) else "that begin at"
     if time.some_time:
         return (
-            f"It must hold at some time in the {time.horizon.value} s {ends} `{time.event.path}`. The margin is the "
-            "largest in this time; the result says when it first held and how much time was left."
+            f"It must hold at some time in the {_seconds(time.horizon)} s {ends} `{time.event.path}`. The margin is "
+            "the largest in this time; the result says when it first held and how much time was left."
         )
-    return f"Judged throughout the {time.horizon.value} s {ends} `{time.event.path}`."
+    return f"Judged throughout the {_seconds(time.horizon)} s {ends} `{time.event.path}`."
+
+
+def _seconds(horizon: tree.Number | tree.Ref) -> str:
+    return f"<{horizon.path}>" if isinstance(horizon, tree.Ref) else str(horizon.value)
 
 
 def condition_meaning(condition: tree.PhraseUse) -> str:

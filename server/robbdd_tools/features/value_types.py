@@ -14,7 +14,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.elements import Element, elements_of, scene_members, site_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
-from robbdd_tools.names.uses import ANYTHING, Kinds, slot_kinds
+from robbdd_tools.names.uses import ANYTHING, SECONDS, Kinds, slot_kinds
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ _ELEMENT_KINDS: Mapping[SymbolKind, str] = {
     SymbolKind.AGENT: "agent",
     SymbolKind.AGENT_SET: "agent",
 }
+_BEFORE_SECONDS = re.compile(r"(?:,|\bwithin)\s*<?\s*\Z")
+_SECONDS = re.compile(rf"{_REFERENCE}\s*seconds\b")
 _MEMBER_KINDS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 
@@ -84,7 +86,8 @@ def may_be(kind: SymbolKind, wanted: Kinds) -> bool:
 
 def slot_wanted(before: str) -> Kinds:
     """Return the kinds of the slot at the end of a text. If no phrase has started there, any kind fits."""
-    return next((kinds for pattern, kinds in _beginnings() if pattern.search(before)), ANYTHING)
+    found = next((kinds for pattern, kinds in _beginnings() if pattern.search(before)), ANYTHING)
+    return SECONDS if found == ANYTHING and _BEFORE_SECONDS.search(before) else found
 
 
 def kinds_in_text(text: str) -> dict[str, Kinds]:
@@ -94,6 +97,8 @@ def kinds_in_text(text: str) -> dict[str, Kinds]:
         for match in pattern.finditer(text):
             for name, kinds in zip(match.groups(), slots, strict=True):
                 found[name] = found.get(name, ANYTHING) & kinds
+    for match in _SECONDS.finditer(text):
+        found[match[1]] = found.get(match[1], ANYTHING) & SECONDS
     return found
 
 

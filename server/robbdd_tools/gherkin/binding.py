@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.gherkin import text
-from robbdd_tools.gherkin.words import Placeholder, filled
+from robbdd_tools.gherkin.words import Placeholder, condition_words, filled, word
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
@@ -23,9 +24,10 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.monitor.time import During, TimeConstraint
+from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.specs import plain_name
+from robbdd_tools.protocol.time_words import instant_words
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
@@ -36,7 +38,7 @@ Values = Mapping[Iri, Value]
 
 
 class UnknownElements(Exception):
-    """A clause needs the elements of a set, but the value of the set varies in the Scenario Outline."""
+    """A clause needs the elements of a set, or a horizon, but this value varies in the Scenario Outline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +80,22 @@ class Binder:
             case Fluent():
                 predicate = self.catalog.predicates[clause.predicate]
                 slots = self._slots((slot.name for slot in predicate.slots), clause.arguments, values)
-                named, condition = self._named(clause, values), self._condition(clause, values)
-                return stated.Fluent(predicate, slots, self._time(clause), clause.iri, named, condition)
+                condition, time = self._condition(clause, values), self._time(clause, values)
+                if time is None:
+                    return self._without_time(filled(predicate.sentence, slots), clause, values)
+                return stated.Fluent(predicate, slots, time, clause.iri, self._named(clause, values), condition)
             case TextFluent():
                 fillers = self._slots(clause.arguments, clause.arguments, values)
                 words = filled(text.free(clause.template), fillers)
-                named, condition = self._named(clause, values), self._condition(clause, values)
-                return stated.Text(words, self._time(clause), clause.iri, named, condition)
+                condition, time = self._condition(clause, values), self._time(clause, values)
+                if time is None:
+                    return self._without_time(words, clause, values)
+                return stated.Text(words, time, clause.iri, self._named(clause, values), condition)
             case TextClause():
-                return stated.Text(text.free(clause.text), self._time(clause), clause.iri, self._named(clause, values))
+                words, time = text.free(clause.text), self._time(clause, values)
+                if time is None:
+                    return self._without_time(words, clause, values)
+                return stated.Text(words, time, clause.iri, self._named(clause, values))
             case Junction(operator="not"):
                 return stated.Junction("not", (self._joined("and", clause.operands, values),))
             case Junction():
@@ -182,11 +191,28 @@ class Binder:
             return f"{{{slot}}}"
         return self.filler(values.get(term, term) if isinstance(term, Iri) else term)
 
-    def _time(self, clause: Fluent | TextFluent | TextClause) -> TimeConstraint:
+    def _time(self, clause: Fluent | TextFluent | TextClause, values: Values) -> TimeConstraint | None:
+        """Return the time constraint of a clause; ``None`` if the value of its horizon is not a duration."""
         time = clause.time
         if isinstance(time, During):
             return replace(time, start=self.curie(time.start), end=self.curie(time.end))
-        return replace(time, event=self.curie(time.event))
+        if clause.seconds is None:
+            return replace(time, event=self.curie(time.event))
+        value = values.get(clause.seconds)
+        if isinstance(value, Placeholder):
+            raise UnknownElements
+        seconds = seconds_of(value)
+        return None if seconds is None else replace(time, event=self.curie(time.event), horizon=seconds)
+
+    def _without_time(self, words: str, clause: Fluent | TextFluent | TextClause, values: Values) -> stated.Text:
+        """Return a clause without a valid horizon. It is a text, so that nothing judges it."""
+        condition = None if isinstance(clause, TextClause) else self._condition(clause, values)
+        time, value = clause.time, None if clause.seconds is None else values.get(clause.seconds)
+        event = self.curie(time.end if isinstance(time, During) else time.event)
+        seconds = "?" if value is None else word(self.filler(value))
+        relation = "before" if isinstance(time, Before) else "after"
+        ending = instant_words(relation, event, seconds, time.some_time)
+        return stated.Text(f"{words}{condition_words(condition)} {ending}", None, clause.iri)
 
     def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:
         """Return the values of a clause's variables and slots, by name."""
@@ -207,18 +233,25 @@ class Binder:
                 return self.curie(value) if isinstance(value, Iri) else value
 
 
+def seconds_of(value: Value | None) -> float | None:
+    """Return the value of a horizon's variable in s; ``None`` if it is not a finite number of at least 0."""
+    return float(value) if isinstance(value, int | float) and isfinite(value) and value >= 0 else None
+
+
 def mentions(clause: Clause, variable: Iri) -> bool:
     """Return whether a clause refers to a variable."""
     match clause:
         case Fluent() | TextFluent():
-            return variable in _terms(clause)
+            return variable in _terms(clause) or variable == clause.seconds
+        case TextClause():
+            return variable == clause.seconds
         case BehaviourClause():
             return variable in clause.arguments.values()
         case Junction():
             return any(mentions(operand, variable) for operand in clause.operands)
         case ForAll() | Exists():
             return clause.in_set == variable or any(mentions(part, variable) for part in clause.clauses)
-        case TextClause() | EventClause():
+        case EventClause():
             return False
 
 
@@ -230,5 +263,5 @@ def _terms(clause: Fluent | TextFluent) -> list[Iri | str]:
 
 def _mentions_once(clause: Clause, variable: Iri) -> bool:
     if isinstance(clause, Fluent | TextFluent):
-        return _terms(clause).count(variable) == 1
+        return _terms(clause).count(variable) == 1 and variable != clause.seconds
     return isinstance(clause, Exists) and len(clause.clauses) == 1 and _mentions_once(clause.clauses[0], variable)

@@ -28,7 +28,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.monitor.time import Before, During, TimeConstraint
+from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.protocol.time_words import instant_words, interval_words
 
 HEAD = '''"""Steps of {name} for a robot or simulator of your own."""
@@ -133,12 +133,12 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
                 yield _pattern("when", load_catalog().behaviours[clause.behaviour].sentence)
             case Fluent():
                 sentence = load_catalog().predicates[clause.predicate].sentence
-                yield _pattern(clause.role, f"{sentence}{_condition(clause)} {_time(clause.time)}")
+                yield _pattern(clause.role, f"{sentence}{_condition(clause)} {_time(clause)}")
             case TextFluent():
-                yield _pattern(clause.role, f"{text.free(clause.template)}{_condition(clause)} {_time(clause.time)}")
+                yield _pattern(clause.role, f"{text.free(clause.template)}{_condition(clause)} {_time(clause)}")
             case TextClause():
                 literal = text.free(clause.text).replace("{", "{{").replace("}", "}}")
-                yield _pattern(clause.role, f"{literal} {_time(clause.time)}")
+                yield _pattern(clause.role, f"{literal} {_time(clause)}")
 
 
 def _condition(clause: Fluent | TextFluent) -> str:
@@ -146,11 +146,12 @@ def _condition(clause: Fluent | TextFluent) -> str:
     return "" if condition is None else f" whenever {load_catalog().predicates[condition.predicate].sentence}"
 
 
-def _time(constraint: TimeConstraint) -> str:
+def _time(clause: Fluent | TextFluent | TextClause) -> str:
+    constraint = clause.time
     if isinstance(constraint, During):
         return interval_words("{start}", "{end}", constraint.some_time)
     relation = "before" if isinstance(constraint, Before) else "after"
-    seconds = None if constraint.horizon is None else "{seconds:g}"
+    seconds = None if constraint.horizon is None and clause.seconds is None else "{seconds:g}"
     return instant_words(relation, "{event}", seconds, constraint.some_time)
 
 

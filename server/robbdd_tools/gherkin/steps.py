@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.binding import Binder, Value, Values
-from robbdd_tools.gherkin.words import filled, word
+from robbdd_tools.gherkin.words import condition_words, filled, word
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
@@ -96,9 +96,9 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
     """Return the sentence of a statement. ``within`` is true if the sentence is a part of a group."""
     match statement:
         case stated.Fluent(predicate, arguments, time):
-            return f"{filled(predicate.sentence, arguments)}{_condition(statement)} {time_words(time)}"
+            return f"{filled(predicate.sentence, arguments)}{condition_words(statement.condition)} {time_words(time)}"
         case stated.Text(words, time):
-            shown = (text.in_group(words) if within else words) + _condition(statement)
+            shown = (text.in_group(words) if within else words) + condition_words(statement.condition)
             return shown if time is None else f"{shown} {time_words(time)}"
         case stated.Junction("not", operands):
             return f"not ( {sentence(operands[0], within=True)} )"
@@ -108,8 +108,3 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
             return filled(behaviour.sentence, arguments)
         case stated.EventOccurrence(event):
             return f'event "{event}" occurs'
-
-
-def _condition(leaf: stated.Fluent | stated.Text) -> str:
-    condition = leaf.condition
-    return "" if condition is None else f" whenever {filled(condition.predicate.sentence, condition.arguments)}"

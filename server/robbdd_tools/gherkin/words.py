@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from robbdd_tools.gherkin import text
-from robbdd_tools.protocol.clauses import AnyOf, Filler
+from robbdd_tools.protocol.clauses import AnyOf, Condition, Filler
 
 
 class Placeholder(str):
@@ -36,6 +36,11 @@ def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
         filler = fillers.get(parts[index])
         parts[index] = f"{{{parts[index]}}}" if filler is None else word(filler)
     return "".join(parts)
+
+
+def condition_words(condition: Condition | None) -> str:
+    """Return the condition of a clause as it follows the predicate in a sentence; empty if there is none."""
+    return "" if condition is None else f" whenever {filled(condition.predicate.sentence, condition.arguments)}"
 
 
 # Not str.format: a user's template must not reach attributes or items of our objects.

@@ -41,7 +41,8 @@ class Fluent:
     """A predicate under a time constraint. The events of the time constraint are IRIs.
 
     ``predicate`` is the name of the predicate in the catalog. ``arguments`` maps each slot of the predicate to a
-    variable, an element or a bare name. ``condition`` selects the samples at which the predicate must hold.
+    variable, an element or a bare name. ``condition`` selects the samples at which the predicate must hold. ``seconds``
+    is the variable whose value is the horizon of the time constraint (s), if any.
     """
 
     iri: Iri
@@ -50,6 +51,7 @@ class Fluent:
     arguments: Mapping[str, Iri | str]
     time: TimeConstraint
     condition: Condition | None = None
+    seconds: Iri | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,7 @@ class TextFluent:
     arguments: Mapping[str, Iri]
     time: TimeConstraint
     condition: Condition | None = None
+    seconds: Iri | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +75,7 @@ class TextClause:
     role: str
     text: str
     time: TimeConstraint
+    seconds: Iri | None = None
 
 
 @dataclass(frozen=True, slots=True)

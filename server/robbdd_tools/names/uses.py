@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Kinds = frozenset[str]
+SECONDS: Kinds = frozenset({"number"})
+SECONDS_PHRASE = "… seconds"
 ELEMENTS: Kinds = frozenset({"object", "workspace", "agent"})
 ANYTHING: Kinds = ELEMENTS | {"number", "quantity", "string"}
 _SLOTS: Mapping[Kind, Kinds] = {
@@ -119,6 +121,8 @@ class _Collector:
                     self._phrase(node.condition, bound)
             case tree.TextClause():
                 self.visit(node.time, bound, repeated=repeated)
+            case tree.Before(horizon=tree.Ref() as seconds) | tree.After(horizon=tree.Ref() as seconds):
+                self.uses.append(Use(seconds, SECONDS, SECONDS_PHRASE, bound.get(seconds.path)))
             case tree.During():
                 self.durations.append(node)
                 if not repeated:

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
-from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, TreeNode, Variant
+from robbdd_tools.gherkin.binding import seconds_of
+from robbdd_tools.graph.acceptance_model import (
+    AcceptanceModel,
+    Cell,
+    Clause,
+    Fluent,
+    Iri,
+    TextClause,
+    TextFluent,
+    TreeNode,
+    Variant,
+    every_clause,
+)
 from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.protocol.specs import ScenarioSpec, SceneSpec
@@ -124,20 +136,17 @@ def _joined(scenes: list[SceneSpec]) -> SceneSpec:
 
 def _horizons(member: Member) -> Iterator[tuple[bool, float]]:
     """Yield each time horizon of a member: whether it is before the event (*before*), and its length in s."""
-    for clause in (*member.variant.template.clauses, *member.variant.clauses):
-        yield from _clause_horizons(clause)
+    clauses = (*member.variant.template.clauses, *member.variant.clauses)
+    yield from _clause_horizons(clauses, member.values)
     for policy in () if member.execution is None else member.execution.policies:
         if policy.horizon is not None:
             yield from ((True, policy.horizon), (False, policy.horizon))
 
 
-def _clause_horizons(clause: Clause) -> Iterator[tuple[bool, float]]:
-    match getattr(clause, "time", None):
-        case Before(_, float(horizon)):
-            yield True, horizon
-        case After(_, float(horizon)):
-            yield False, horizon
-        case _:
-            pass
-    for inner in getattr(clause, "clauses", getattr(clause, "operands", ())):
-        yield from _clause_horizons(inner)
+def _clause_horizons(clauses: Iterable[Clause], values: Mapping[Iri, Cell]) -> Iterator[tuple[bool, float]]:
+    for clause in every_clause(clauses):
+        if isinstance(clause, Fluent | TextFluent | TextClause) and isinstance(clause.time, Before | After):
+            variable = clause.seconds
+            horizon = clause.time.horizon if variable is None else seconds_of(values.get(variable))
+            if horizon is not None:
+                yield isinstance(clause.time, Before), horizon

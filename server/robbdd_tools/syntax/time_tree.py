@@ -18,19 +18,19 @@ class During(Node):
 
 @dataclass(frozen=True, slots=True)
 class Before(Node):
-    """``[[within] h seconds] before <event>``. ``some_time`` is true after ``within``."""
+    """``[[within] h seconds] before <event>``; ``h`` is a number or a variable. ``some_time``: after ``within``."""
 
     some_time: bool
-    horizon: Number | None
+    horizon: Number | Ref | None
     event: Ref
 
 
 @dataclass(frozen=True, slots=True)
 class After(Node):
-    """``[[within] h seconds] after <event>``. ``some_time`` is true after ``within``."""
+    """``[[within] h seconds] after <event>``; ``h`` is a number or a variable. ``some_time``: after ``within``."""
 
     some_time: bool
-    horizon: Number | None
+    horizon: Number | Ref | None
     event: Ref
 
 

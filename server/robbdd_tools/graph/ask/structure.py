@@ -12,7 +12,7 @@ from itertools import chain
 
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import COMPOSITES
+from robbdd_tools.graph.rdf.vocabulary import COMPOSITES, HORIZON_VARIABLE, SOME_TIME
 from robbdd_tools.graph.read.variable_roles import words_of
 from robbdd_tools.graph.write.built import BuiltGraph
 from robbdd_tools.graph.write.source_map import Location
@@ -180,7 +180,9 @@ class _Reader:
         records = self.records
         before, after = (records.iris(records.all(node, f"time:{kind}-event")) for kind in ("before", "after"))
         horizon = records.text(node, "time:horizon-seconds")
-        span = f"within {horizon} s " if horizon else ""
+        horizon = horizon or self._names(node, HORIZON_VARIABLE)
+        lead = "within" if records.is_a(node, SOME_TIME) else "for"
+        span = f"{lead} {horizon} s " if horizon else ""
         if before and after:
             return (f"from {self._name(after[0])} until {self._name(before[0])}",)
         return tuple(

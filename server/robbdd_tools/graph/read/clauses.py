@@ -22,7 +22,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, SOME_TIME, expand
+from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, SOME_TIME, expand
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class ClauseReader:
         if records.is_a(iri, "bdd:ThereExists"):
             return Exists(iri, role, *self._quantified(iri), self.clauses(iri, inside=inside))
         if records.is_a(iri, "rbw:TextClause"):
-            return TextClause(iri, role, records.text(iri, "rbw:text"), self.time(iri))
+            return TextClause(iri, role, records.text(iri, "rbw:text"), self.time(iri), self._seconds(iri))
         for operator, kind in JUNCTIONS.items():
             if records.is_a(iri, kind):
                 return Junction(iri, role, operator, self.clauses(iri, "rbw:operands", inside))
@@ -81,7 +81,8 @@ class ClauseReader:
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
                 arguments = self._arguments(iri, word.slots)
-                return Fluent(iri, role, word.name, arguments, self.time(iri), self._condition(iri))
+                time, condition = self.time(iri), self._condition(iri)
+                return Fluent(iri, role, word.name, arguments, time, condition, self._seconds(iri))
         raise Incomplete(f"{iri} has no predicate that this installation knows")
 
     def _text_fluent(self, iri: Iri, role: str) -> TextFluent:
@@ -91,7 +92,8 @@ class ClauseReader:
             raise Incomplete(f"{iri} has {len(names)} argument names for {len(variables)} variables")
         template = self.records.text(iri, "bdd:template-string")
         arguments = dict(zip(names, variables, strict=True))
-        return TextFluent(iri, role, template, arguments, self.time(iri), self._condition(iri))
+        time, condition = self.time(iri), self._condition(iri)
+        return TextFluent(iri, role, template, arguments, time, condition, self._seconds(iri))
 
     def _condition(self, fluent: Iri) -> Condition | None:
         if not self.records.all(fluent, "rbw:whenever"):
@@ -145,6 +147,14 @@ class ClauseReader:
         if before:
             return Before(self.records.one(iri, "time:before-event"), seconds, some_time=some_time)
         return After(self.records.one(iri, "time:after-event"), seconds, some_time=some_time)
+
+    def _seconds(self, iri: Iri) -> Iri | None:
+        """Return the variable of a clause's horizon, if any."""
+        if not self.records.all(iri, HORIZON_VARIABLE):
+            return None
+        if self.records.all(iri, "time:horizon-seconds") or not isinstance(self.time(iri), Before | After):
+            raise Incomplete(f"{iri} has a horizon that is not exactly one number or variable")
+        return self.records.one(iri, HORIZON_VARIABLE)
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:

@@ -9,7 +9,7 @@ from robbdd_tools.catalog.api import Behaviour, Kind, Predicate
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Records
-from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, expand
 
 ELEMENT_OF_KIND = {
     Kind.OBJECT: "object",
@@ -20,11 +20,13 @@ ELEMENT_OF_KIND = {
     Kind.ANY: "element",
 }
 """Kind of a slot → element kind of its variable, or of each element of its set."""
+HORIZON = "horizon"
+"""Kind of a variable that is a number of seconds."""
 
 
 @dataclass(slots=True)
 class Roles:
-    """The element kinds of each variable and set, and the quantifiers in nesting order."""
+    """The kinds of each variable and set, and the quantifiers in nesting order."""
 
     kinds: dict[str, dict[str, None]] = field(default_factory=dict[str, dict[str, None]])
     quantifiers: list[Iri] = field(default_factory=list[Iri])
@@ -74,6 +76,8 @@ def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
                 if slot.kind in ELEMENT_OF_KIND:
                     for variable in records.iris(records.all(clause, slot.property)):
                         roles.add(variable, [ELEMENT_OF_KIND[slot.kind]])
+        for variable in records.iris(records.all(clause, HORIZON_VARIABLE)):
+            roles.add(variable, [HORIZON])
         if records.all(clause, "bdd:in-set"):
             roles.quantifiers.append(clause)
     for quantifier in reversed(roles.quantifiers):

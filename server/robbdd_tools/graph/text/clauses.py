@@ -74,12 +74,14 @@ class ClauseText:
             lines.append(f"event {self.names.lazily(clause.event, 'event')} occurs")
         return lines
 
-    def time(self, time: TimeConstraint) -> str:
-        """Return a time constraint as text."""
+    def time(self, time: TimeConstraint, variable: Iri | None = None) -> str:
+        """Return a time constraint as text. ``variable`` is the variable of its horizon, if any."""
         if isinstance(time, During):
             lead = "at some time " if time.some_time else ""
             return f"{lead}from {self._event(time.start)} until {self._event(time.end)}"
-        horizon = "" if time.horizon is None else f"{str(time.horizon).removesuffix('.0')} seconds "
+        seconds = "" if time.horizon is None else str(time.horizon).removesuffix(".0")
+        seconds = seconds if variable is None else self._variable(variable)
+        horizon = f"{seconds} seconds " if seconds else ""
         horizon = f"within {horizon}" if horizon and time.some_time else horizon
         return f"{horizon}{'before' if isinstance(time, Before) else 'after'} {self._event(time.event)}"
 
@@ -98,12 +100,11 @@ class ClauseText:
         match clause:
             case Fluent() | TextFluent():
                 name = self.names.declare(clause.iri, "clause", owner=self.owner, namespace=self.namespace)
-                return (
-                    f"{name}: holds({self._predicate(clause)}{self._condition(clause, name)}, {self.time(clause.time)})"
-                )
+                time = self.time(clause.time, clause.seconds)
+                return f"{name}: holds({self._predicate(clause)}{self._condition(clause, name)}, {time})"
             case TextClause():
                 self._named(clause.iri, "text", path)
-                return f"{quoted(clause.text)} {self.time(clause.time)}"
+                return f"{quoted(clause.text)} {self.time(clause.time, clause.seconds)}"
             case Junction(operator="not"):
                 self._named(clause.iri, "not", path)
                 return f"( not {self._joined('and', self._each(clause.operands, path))} )"
