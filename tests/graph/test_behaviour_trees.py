@@ -6,7 +6,7 @@ from rdflib import RDF, BNode, URIRef
 
 from graph.statements import built, of
 from graph.test_text import assert_identity
-from graph.test_validate import check
+from graph.validated import check
 from kit import EVENTS, STORY, TEMPLATE
 from robbdd_tools.graph.rdf.vocabulary import expand
 from robbdd_tools.graph.read.acceptance import read_model
