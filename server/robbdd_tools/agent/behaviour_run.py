@@ -16,9 +16,8 @@ from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.engine import TICK
-from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError
+from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError, at
 from robbdd_tools.world.extent import outline_of
-from robbdd_tools.world.frames import at
 from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.reaching import ReachSampler

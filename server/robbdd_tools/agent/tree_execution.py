@@ -17,8 +17,7 @@ from py_trees.composites import Selector, Sequence
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
-from robbdd_tools.world.errors import SceneError, SimulationError, UserError
-from robbdd_tools.world.frames import at
+from robbdd_tools.world.errors import SceneError, SimulationError, UserError, at
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec

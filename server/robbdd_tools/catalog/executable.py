@@ -217,6 +217,7 @@ class Realisation:
     element: str
     models: tuple[ModelSource, ...]
     origin: Origin | None = None
+    is_agent: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ def check(paths: Sequence[Path], as_json: bool) -> int:
         model = load_all(paths)
     except NotAModel as error:
         return fail(str(error))
-    found = model.diagnostics
+    found = (*model.diagnostics, *model.scene_findings)
     errors = sum(finding.is_error for finding in found)
     if as_json:
         for finding in found:

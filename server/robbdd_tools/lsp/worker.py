@@ -16,6 +16,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostic
 from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.workbench.scene_findings import SceneChecker
 
 
 class AboutFile(Protocol):
@@ -78,6 +79,7 @@ class Worker:
     validations: dict[str, Validation] = field(default_factory=dict[str, Validation])
     left: dict[str, int] = field(default_factory=dict[str, int])
     """Number of abandoned validations in a row, by file."""
+    scenes: SceneChecker = field(default_factory=SceneChecker)
 
     def forget(self, uri: str) -> None:
         """Drop the state of a file."""
@@ -98,6 +100,7 @@ class Worker:
         try:
             snapshot = self.project.snapshot()
             found = shape_diagnostics(snapshot, request.uri, request.shapes, validation, is_superseded)
+            found += [] if is_superseded() else self.scenes.findings(snapshot, request.uri)
         except Superseded:
             self.left[request.uri] = left + 1
             return None
@@ -114,6 +117,7 @@ class Worker:
         try:
             found = fast_diagnostics(snapshot, request.uri)
             found += shape_diagnostics(snapshot, request.uri, request.shapes)
+            found += self.scenes.findings(snapshot, request.uri)
         except Exception as error:  # As above.
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}

@@ -140,6 +140,25 @@ class Model:
                 found |= dict.fromkeys(findings(file.snapshot, all_diagnostics(file.snapshot, file.uri, cycle)))
         return tuple(found)
 
+    @cached_property
+    def scene_findings(self) -> tuple[Finding, ...]:
+        """The findings about models and given poses of executable scenes that a run would refuse.
+
+        A process sets these scenes up, without users' code, so this takes about a second if there are any.
+        """
+        from robbdd_tools.workbench.scene_findings import SceneChecker
+
+        checker, found = SceneChecker(), dict[Finding, None]()
+        scenes = {
+            one.document.uri: file.snapshot
+            for file in self.files
+            for one in file.snapshot.closure(file.uri)
+            if one.document.uri.endswith(".scenex")
+        }
+        for uri, snapshot in scenes.items():
+            found |= dict.fromkeys(findings(snapshot, checker.findings(snapshot, uri)))
+        return tuple(found)
+
     @property
     def is_valid(self) -> bool:
         """Whether there is no error among the findings, so that the model can be run."""

@@ -72,14 +72,14 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
     base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
     seed = seed if cast.seed is None else cast.seed
     arranged = arrange(scene, cast, base, np.random.default_rng(seed))
-    model = _compile(cast, bases, arranged.poses)
+    model = compile_world(cast, bases, arranged.poses)
     return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
 
 
 def compile_objects(cast: Cast) -> Any:
     """Return a compiled model of the objects alone, all at the origin, from which they can be drawn."""
     alone = replace(cast, agents={}, staging=None)
-    return _compile(alone, {}, {name: Pose((0.0, 0.0, 0.0)) for name in cast.objects})
+    return compile_world(alone, {}, {name: Pose((0.0, 0.0, 0.0)) for name in cast.objects})
 
 
 def _seed_of(scene: SceneSpec, seed: int) -> int:
@@ -115,7 +115,8 @@ def _read(path: str) -> Any:
     return mujoco.MjSpec.from_file(path)
 
 
-def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -> Any:
+def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -> Any:
+    """Return the engine's compiled model of a scene. Raises ``SceneError``."""
     spec = mujoco.MjSpec()
     _set_options(spec)
     _add_room(spec)

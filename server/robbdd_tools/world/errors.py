@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import Origin
     from robbdd_tools.monitor.fault import Fault
+
+
+def at(origin: Origin | None) -> str:
+    """Return a source position as the beginning of a message."""
+    return "" if origin is None else f"{Path(origin.file).name}:{origin.line}:{origin.column}: "
 
 
 class _WithFault(Exception):
@@ -17,7 +24,15 @@ class _WithFault(Exception):
 
 
 class SceneError(_WithFault):
-    """The scene cannot be built; the message says what is wrong and what to change."""
+    """The scene cannot be built; the message says what is wrong and what to change.
+
+    ``origin`` is the source position that the message begins with; ``reason`` is the message without it.
+    """
+
+    def __init__(self, reason: str, fault: Fault | None = None, origin: Origin | None = None) -> None:
+        super().__init__(at(origin) + reason, fault)
+        self.reason = reason
+        self.origin = origin
 
 
 class BehaviourError(Exception):

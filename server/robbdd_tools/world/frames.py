@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.catalog.executable import Body, Link, Origin, SceneInstance
+    from robbdd_tools.catalog.executable import Body, Link, SceneInstance
 
     Transform = tuple[FloatArray, FloatArray]
     """Position (3,) m and unit quaternion (4,), w first."""
@@ -22,9 +21,8 @@ if TYPE_CHECKING:
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def at(origin: Origin | None) -> str:
-    """Return a source position as the beginning of a message."""
-    return "" if origin is None else f"{Path(origin.file).name}:{origin.line}:{origin.column}: "
+class PoseError(SceneError):
+    """A body has no pose, because its frames are not connected to the world, or a pose cannot be determined."""
 
 
 class Frames:
@@ -40,17 +38,18 @@ class Frames:
         """Return the pose of a body's own frame in the world, ``None`` for a body that no pose or joint places.
 
         The body's own placement is drawn anew for each ``element`` and ``attempt``, that of its supports once. Raises
-        ``SceneError`` if no chain of frames connects it to the world or a distribution cannot be sampled.
+        ``PoseError`` if no chain of frames connects it to the world or a distribution cannot be sampled.
         """
         body = self._bodies.get(iri)
         if body is None:
-            raise SceneError(f"the body '{_short(iri)}' is not part of a 'kgraph' of the scene")
+            raise PoseError(f"the body '{_short(iri)}' is not part of a 'kgraph' of the scene")
         if not body.frames or not self._is_placed(body):
             return None
         known = self._known(body, f"{element} {attempt}")
         if body.frames[0] not in known:
-            where = f"{at(body.origin)}the body '{_short(iri)}' is placed nowhere: no pose or joint leads from"
-            raise SceneError(f"{where} '{_short(self._instance.anchor) or 'the world'}' to its frame")
+            where = f"the body '{_short(iri)}' is placed nowhere: no pose or joint leads from"
+            world = _short(self._instance.anchor) or "the world"
+            raise PoseError(f"{where} '{world}' to its frame", origin=body.origin)
         return known[body.frames[0]]
 
     def _is_placed(self, body: Body) -> bool:
@@ -96,21 +95,21 @@ class Frames:
         if link.position_law:
             position = self._drawn(link.position_law, f"{link.frame} xyz {salt}") * link.scale
         if len(position) != 3:
-            raise SceneError(f"{at(link.origin)}a position needs 3 numbers, not {len(position)}")
+            raise PoseError(f"a position needs 3 numbers, not {len(position)}", origin=link.origin)
         rotation = np.array(link.rotation)
         if link.rotation_law:
             rotation = _rotation(self._drawn(link.rotation_law, f"{link.frame} turn {salt}"), link)
         if len(rotation) != 4:
-            raise SceneError(f"{at(link.origin)}the orientation is not a rotation")
+            raise PoseError("the orientation is not a rotation", origin=link.origin)
         return position, rotation
 
     def _drawn(self, iri: str, salt: str) -> FloatArray:
         law = self._laws.get(iri)
         if law is None:
-            raise SceneError(f"the distribution '{_short(iri)}' does not exist")
+            raise PoseError(f"the distribution '{_short(iri)}' does not exist")
         fault = law_fault(law)
         if fault:
-            raise SceneError(f"{at(law.origin)}the distribution '{_short(law.iri)}' {fault}")
+            raise PoseError(f"the distribution '{_short(law.iri)}' {fault}", origin=law.origin)
         digest = hashlib.sha256(f"{self._seed} {salt}".encode()).digest()
         dice = np.random.default_rng(int.from_bytes(digest[:8], "big"))
         match law.kind:
@@ -131,7 +130,7 @@ def _rotation(drawn: FloatArray, link: Link) -> FloatArray:
     if len(drawn) == 4:
         return drawn / np.linalg.norm(drawn)
     if len(drawn) != 3:
-        raise SceneError(f"{at(link.origin)}an orientation needs 3 angles or a rotation, not {len(drawn)} numbers")
+        raise PoseError(f"an orientation needs 3 angles or a rotation, not {len(drawn)} numbers", origin=link.origin)
     turn: FloatArray = np.empty(4)
     mujoco.mju_euler2Quat(turn, drawn, "xyz")
     return turn

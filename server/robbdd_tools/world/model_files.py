@@ -17,7 +17,6 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
-from robbdd_tools.world.frames import at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +38,7 @@ def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
     found = next((model for model in models if model.format != "usd"), None)
     if found is None and models:
         message = f"'{element}' has a USD model only, which this simulator cannot load: name an MJCF or URDF model too"
-        raise SceneError(at(models[0].origin) + message)
+        raise SceneError(message, origin=models[0].origin)
     return found
 
 
@@ -49,15 +48,15 @@ def load(source: ModelSource) -> Any:
         return _from_code(source)
     path = _path(source)
     if not path.exists():
-        raise SceneError(f"{at(source.origin)}there is no model file {path}")
+        raise SceneError(f"there is no model file {path}", origin=source.origin)
     problem = unusable(path)
     if problem is not None:
-        raise SceneError(f"{at(source.origin)}the model file {path} cannot be used: {problem.reason}")
+        raise SceneError(f"the model file {path} cannot be used: {problem.reason}", origin=source.origin)
     try:
         spec = _read(str(path)).copy()
     except (ValueError, OSError) as error:
         words = " ".join(str(error).split())  # the engine's messages have several lines
-        raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {words}") from error
+        raise SceneError(f"the model file {path} cannot be read: {words}", origin=source.origin) from error
     # Links fixed to others keep their names: they may be the tool, or mapped to a body.
     spec.compiler.fusestatic = False
     return spec
@@ -83,7 +82,7 @@ def _path(source: ModelSource) -> Path:
         found = next((share / path for share in shares if share.is_dir()), None)
         if found is None:
             where = "AMENT_PREFIX_PATH is not set" if not prefixes else "it is not in AMENT_PREFIX_PATH"
-            raise SceneError(f"{at(source.origin)}the ROS package '{source.package}' cannot be found: {where}")
+            raise SceneError(f"the ROS package '{source.package}' cannot be found: {where}", origin=source.origin)
         return found
     return (started_in() if source.origin is None else Path(source.origin.file).parent) / path
 
@@ -101,7 +100,7 @@ def _from_code(source: ModelSource) -> Any:
         except (ValueError, AttributeError) as error:
             raise refused(source.name, f"{source.name} created no model: {error}", definition_of(make)) from error
     except UserCodeError as error:
-        raise SceneError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
+        raise SceneError(str(error), replace(error.fault, origin=source.iri), source.origin) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +135,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
     ]
     if not geoms:
-        raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no collision shape")
+        raise SceneError(f"the body '{model.body(body).name}' has no collision shape", origin=source.origin)
     shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
     low, high = bounds_of(shapes)
     joint = int(model.body_jntadr[body])
@@ -166,15 +165,15 @@ def compiled(spec: Any, source: ModelSource) -> Any:
     try:
         return spec.copy().compile()
     except ValueError as error:
-        raise SceneError(f"{at(source.origin)}the model {source.name} does not compile: {error}") from error
+        raise SceneError(f"the model {source.name} does not compile: {error}", origin=source.origin) from error
 
 
 def _body(model: Any, source: ModelSource, name: str) -> int:
     names = [str(model.body(index).name) for index in range(1, model.nbody)]
     if not names:
-        raise SceneError(f"{at(source.origin)}the model {source.name} has no body")
+        raise SceneError(f"the model {source.name} has no body", origin=source.origin)
     if name and name not in names:
-        raise SceneError(f"{at(source.origin)}{source.name} has no body '{name}'; it has {', '.join(names)}")
+        raise SceneError(f"{source.name} has no body '{name}'; it has {', '.join(names)}", origin=source.origin)
     return names.index(name) + 1 if name else 1
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.frames import at
 from robbdd_tools.world.owners import geom_owners
 
 if TYPE_CHECKING:
@@ -20,8 +19,12 @@ MAX_NAMED = 3
 """Maximum overlaps named in one message."""
 
 
+class Overlap(SceneError):
+    """Elements overlap in the scene's initial state."""
+
+
 def refuse_overlaps(simulation: Simulation) -> None:
-    """Raise ``SceneError`` with names and depths if elements overlap in a world that has not been stepped yet."""
+    """Raise ``Overlap`` with names and depths if elements overlap in a world that has not been stepped yet."""
     world, data = simulation.world, simulation.data
     owners = geom_owners(world.model, world.cast.agents)
     elements = {*world.cast.objects, *world.cast.agents}
@@ -36,5 +39,5 @@ def refuse_overlaps(simulation: Simulation) -> None:
         named = [f"'{one}' and '{other}' overlap by {1000 * depths[one, other]:.0f} mm" for one, other in deepest]
         more = [f"{len(named) - MAX_NAMED} more pairs overlap"] if len(named) > MAX_NAMED else []
         origins = (world.cast.origin(name) for name in deepest[0])
-        place = at(next((origin for origin in origins if origin is not None), None))
-        raise SceneError(f"{place}{'; '.join(named[:MAX_NAMED] + more)}: nothing may overlap at the start")
+        origin = next((origin for origin in origins if origin is not None), None)
+        raise Overlap(f"{'; '.join(named[:MAX_NAMED] + more)}: nothing may overlap at the start", origin=origin)

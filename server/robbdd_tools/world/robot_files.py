@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.frames import at
 from robbdd_tools.world.model_files import compiled, load
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ def robot_from(source: ModelSource, name: str) -> RobotModel:
     arm = source.arm
     if arm is None:
         wanted = "'tool: \"…\" gripper { … }' in its model block"
-        raise SceneError(f"{at(source.origin)}'{name}' cannot pick without a tool and a gripper: add {wanted}")
+        raise SceneError(f"'{name}' cannot pick without a tool and a gripper: add {wanted}", origin=source.origin)
     spec = load(source)
     tool = _tool_site(spec, source, arm.tool)
     joints = _chain(spec, source, tool)
@@ -47,7 +46,7 @@ def robot_from(source: ModelSource, name: str) -> RobotModel:
     for what, numbers in (("home", home), ("velocity", arm.velocity or (SPEED,) * len(joints))):
         if len(numbers) != len(joints):
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
-            raise SceneError(at(source.origin) + counted)
+            raise SceneError(counted, origin=source.origin)
     key = f"{source.iri}#{name}"
     _prepared[key] = spec
     limits = [
@@ -85,7 +84,7 @@ def _tool_site(spec: Any, source: ModelSource, name: str) -> str:
     body = spec.body(name)
     if body is None:
         known = f"it has the sites {_names(spec.sites)} and the bodies {_names(spec.bodies[1:])}"
-        raise SceneError(f"{at(source.origin)}{source.name} has no site or body '{name}' for the tool; {known}")
+        raise SceneError(f"{source.name} has no site or body '{name}' for the tool; {known}", origin=source.origin)
     body.add_site(name=name)
     return name
 
@@ -99,7 +98,7 @@ def _chain(spec: Any, source: ModelSource, tool: str) -> tuple[str, ...]:
         joints = hinges + joints
         body = body.parent
     if not joints:
-        raise SceneError(f"{at(source.origin)}no joint leads to the tool '{tool}' of {source.name}")
+        raise SceneError(f"no joint leads to the tool '{tool}' of {source.name}", origin=source.origin)
     return tuple(joints)
 
 
@@ -111,7 +110,7 @@ def _pad(spec: Any, source: ModelSource, name: str) -> str:
     touching = [] if body is None else [geom for geom in body.geoms if geom.contype or geom.conaffinity]
     if not touching:
         known = f"it has the geoms {_names(spec.geoms)} and the bodies {_names(spec.bodies[1:])}"
-        raise SceneError(f"{at(source.origin)}{source.name} has no gripping face '{name}'; {known}")
+        raise SceneError(f"{source.name} has no gripping face '{name}'; {known}", origin=source.origin)
     face = touching[0]
     face.name = name
     # URDF does not describe contacts: make gripping faces stiff and rough like rubber, or light objects slip out.
@@ -129,7 +128,7 @@ def _servos(spec: Any, source: ModelSource, joints: tuple[str, ...]) -> None:
             _add_servo(spec, joint, joint, STIFFNESS, DAMPING)
         elif actuator.biastype != mujoco.mjtBias.mjBIAS_AFFINE or actuator.gainprm[0] <= 0:
             message = f"the joint '{joint}' of {source.name} is not driven by a position servo"
-            raise SceneError(f"{at(source.origin)}{message}: use <position>, or leave its actuator out")
+            raise SceneError(f"{message}: use <position>, or leave its actuator out", origin=source.origin)
 
 
 def _gripper_servo(spec: Any, source: ModelSource, name: str) -> None:
@@ -137,7 +136,9 @@ def _gripper_servo(spec: Any, source: ModelSource, name: str) -> None:
         return
     if spec.joint(name) is None:
         known = f"it has the actuators {_names(spec.actuators)} and the joints {_names(spec.joints)}"
-        raise SceneError(f"{at(source.origin)}{source.name} has no actuator or joint '{name}' for the gripper; {known}")
+        raise SceneError(
+            f"{source.name} has no actuator or joint '{name}' for the gripper; {known}", origin=source.origin
+        )
     servo = _add_servo(spec, name, name, GRIP_STIFFNESS, GRIP_DAMPING)
     servo.forcerange = [-GRIP_FORCE, GRIP_FORCE]
     servo.forcelimited = True

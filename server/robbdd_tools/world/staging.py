@@ -11,7 +11,7 @@ import numpy as np
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.frames import Frames, at
+from robbdd_tools.world.frames import Frames
 from robbdd_tools.world.model_files import FromFile, load, object_from, usable
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import robot_from
@@ -88,7 +88,7 @@ class Staging:
         if chosen.kind == "catalog":
             found = load_catalog().objects.get(chosen.name)
             if found is None:
-                raise SceneError(f"{at(chosen.origin)}the catalog has no object '{chosen.name}'")
+                raise SceneError(f"the catalog has no object '{chosen.name}'", origin=chosen.origin)
             return found
         name = next((name for _, name in chosen.bodies), "")
         # A pose in a file of its own is meaningless in the scene.
@@ -102,7 +102,7 @@ class Staging:
         if chosen.kind == "catalog":
             found = load_catalog().robots.get(chosen.name)
             if found is None:
-                raise SceneError(f"{at(chosen.origin)}the catalog has no robot '{chosen.name}'")
+                raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
             return found
         return robot_from(chosen, element)
 
@@ -125,8 +125,8 @@ class Staging:
         pose = self.pose(element)
         if pose is not None and pose.rotation:
             chosen = self._source(element)
-            place = at(None if chosen is None else chosen.origin)
-            raise SceneError(f"{place}the base of '{element}' is tilted: only upright arms are supported")
+            origin = None if chosen is None else chosen.origin
+            raise SceneError(f"the base of '{element}' is tilted: only upright arms are supported", origin=origin)
         return pose
 
     def origin(self, element: str) -> Origin | None:

@@ -11,8 +11,7 @@ import numpy as np
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.arm_kinematics import arm_of
-from robbdd_tools.world.errors import BehaviourError, UserError
-from robbdd_tools.world.frames import at
+from robbdd_tools.world.errors import BehaviourError, UserError, at
 from robbdd_tools.world.motion import frame_of, tool_pose
 
 if TYPE_CHECKING:

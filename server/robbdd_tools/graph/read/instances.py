@@ -18,6 +18,7 @@ from robbdd_tools.catalog.executable import (
 )
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Incomplete, Records
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -155,12 +156,15 @@ class InstanceReader:
             for target in self._records.iris(self._records.all(part, "rbw:realises")):
                 if target not in self._sets:
                     if models:
-                        found[target] = Realisation(target, models, origin)
+                        found[target] = self._realisation(target, models, origin)
                     continue
                 members = (entry for entry in self._sets[target] if isinstance(entry, Iri))
                 if models:
-                    found = {entry: Realisation(entry, models, origin) for entry in members} | found
+                    found = {entry: self._realisation(entry, models, origin) for entry in members} | found
         yield from found.values()
+
+    def _realisation(self, element: Iri, models: tuple[ModelSource, ...], origin: Origin | None) -> Realisation:
+        return Realisation(element, models, origin, self._records.is_a(element, ELEMENT_TYPES["agent"]))
 
     def _models(self, owner: Iri) -> Iterator[ModelSource]:
         records = self._records

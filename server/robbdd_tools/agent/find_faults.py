@@ -1,0 +1,55 @@
+"""``python -m robbdd_tools.agent.find_faults``: find the faults of scene instances that every run would have.
+
+The process reads a list of scene instances as JSON from standard input, and writes a list of faults as JSON to standard
+output. It neither steps a world nor executes users' code.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.catalog.executable import SceneInstance
+from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robbdd_tools.world.errors import SceneError
+
+
+def _faults(instance: SceneInstance) -> Iterator[SceneFault]:
+    from robbdd_tools.world.fixed_faults import fixed_faults
+
+    for error in fixed_faults(instance):
+        yield SceneFault(_kind(error), error.reason, error.origin or instance.origin)
+
+
+def _kind(error: SceneError) -> FaultKind:
+    from robbdd_tools.world.frames import PoseError
+    from robbdd_tools.world.overlaps import Overlap
+
+    if isinstance(error, Overlap):
+        return FaultKind.OVERLAP
+    return FaultKind.POSE if isinstance(error, PoseError) else FaultKind.MODEL
+
+
+def main() -> None:
+    """Answer the request on standard input."""
+    requests, answers = reserve_channel()
+    # Checking needs no graphics: a broken graphics back end must not prevent loading the engine.
+    os.environ["MUJOCO_GL"] = "disable"
+    with os.fdopen(requests, encoding="utf-8") as stream:
+        instances = [from_plain(SceneInstance, one) for one in json.load(stream)]
+    found = [asdict(fault) for instance in instances for fault in _faults(instance)]
+    with os.fdopen(answers, "w", encoding="utf-8") as stream:
+        json.dump(found, stream)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

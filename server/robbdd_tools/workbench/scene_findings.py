@@ -1,0 +1,127 @@
+"""Findings about scene instances for which the simulated world is set up: models and given poses."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Span
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.interpreter import run_for
+from robbdd_tools.base.limits import VALIDATION_SECONDS
+from robbdd_tools.base.model_includes import model_files
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import ModelSource, SceneInstance
+    from robbdd_tools.names.project import Snapshot
+
+FIND = "robbdd_tools.agent.find_faults"
+KNOWN = {FaultKind.MODEL: {"model-file", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
+"""Codes of the rules that report such faults at a better place: with one of these, such faults are not repeated."""
+_TOKEN = re.compile(r"<[^>\n]*>|[\w.-]+|.")
+
+
+class SceneChecker:
+    """Finds faults of scene instances. Instances that have not changed, nor their files, are not examined again."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[str, tuple[SceneFault, ...] | str]] = {}
+
+    def findings(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+        """Return the findings about the scene instances that a ``.scenex`` file declares.
+
+        A file with errors is not examined.
+        """
+        from robbdd_tools.graph.places import placed_instances
+        from robbdd_tools.graph.write.build import build_graph
+
+        file = snapshot.file(uri)
+        declared = [] if file is None else [placed.declaration.tree for placed in file.declarations]
+        if not any(isinstance(one, tree.SceneInstance) for one in declared):
+            return []
+        rules = [one for other in snapshot.closure(uri) for one in fast_diagnostics(snapshot, other.document.uri)]
+        if any(one.severity is Severity.ERROR for one in rules):
+            return []
+        built = build_graph(snapshot, uri)
+        every = placed_instances(built, snapshot)
+        own = [one for one in every if one.origin is not None and path_to_uri(Path(one.origin.file)) == uri]
+        request = json.dumps([asdict(_with_short_names(one)) for one in own])
+        found = self._faults(uri, request, own)
+        if isinstance(found, str):
+            message = f"the models and poses of this scene were not checked: {found}"
+            return [Diagnostic(uri, Span(0, 0), Severity.WARNING, "scene-unchecked", message)]
+        codes = {one.code for one in rules if one.uri == uri}
+        unknown = (one for one in found if codes.isdisjoint(KNOWN.get(FaultKind(one.kind), ())))
+        return [_diagnostic(snapshot, uri, one) for one in unknown]
+
+    def _faults(self, uri: str, request: str, instances: list[SceneInstance]) -> tuple[SceneFault, ...] | str:
+        state = request + repr(list(_file_states(instances)))
+        known = self._known.get(uri)
+        if known is None or known[0] != state:
+            known = self._known[uri] = (state, _examined(request))
+        return known[1]
+
+
+def _with_short_names(instance: SceneInstance) -> SceneInstance:
+    """Return an instance whose elements have their local names, as in the text, if these are unambiguous."""
+    local = [one.element.replace("#", "/").rpartition("/")[2] for one in instance.elements]
+    elements = (
+        replace(one, element=name) if local.count(name) == 1 else one
+        for one, name in zip(instance.elements, local, strict=True)
+    )
+    return replace(instance, elements=tuple(elements))
+
+
+def _file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:
+    """Yield the path, size and time of the last change of each file that the models name."""
+    for instance in instances:
+        models = [*instance.models, *(model for one in instance.elements for model in one.models)]
+        for path in dict.fromkeys(path for model in models for path in _files(model)):
+            state = path.stat()
+            yield str(path), state.st_size, state.st_mtime_ns
+
+
+def _files(model: ModelSource) -> Iterator[Path]:
+    if model.kind == "file" and model.origin is not None:
+        yield from model_files(Path(model.origin.file).parent / Path(model.name).expanduser())
+
+
+def _examined(request: str) -> tuple[SceneFault, ...] | str:
+    """Return the faults of the instances in a request; a text if they could not be examined."""
+    seconds = VALIDATION_SECONDS.value()
+    try:
+        ending = run_for(seconds, FIND, sent=request)
+    except OSError as error:
+        return str(error)
+    if ending.code is None:
+        return f"it took longer than {seconds} seconds"
+    if ending.code:
+        return (ending.errors.strip().splitlines() or [f"the process ended with code {ending.code}"])[-1]
+    return tuple(from_plain(SceneFault, one) for one in json.loads(ending.output))
+
+
+def _diagnostic(snapshot: Snapshot, uri: str, fault: SceneFault) -> Diagnostic:
+    match FaultKind(fault.kind):
+        case FaultKind.OVERLAP:
+            code = "overlap"
+        case FaultKind.POSE:
+            code = "pose"
+        case FaultKind.MODEL:
+            code = "unusable-model"
+    if fault.origin is None:
+        return Diagnostic(uri, Span(0, 0), Severity.WARNING, code, fault.reason)
+    place = path_to_uri(Path(fault.origin.file))
+    document = snapshot.document(place)
+    start = document.line_starts[fault.origin.line - 1] + fault.origin.column - 1
+    token = _TOKEN.match(document.text, start)
+    span = Span(start, start if token is None else token.end())
+    return Diagnostic(place, span, Severity.WARNING, code, fault.reason)

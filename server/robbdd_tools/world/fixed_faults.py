@@ -1,0 +1,100 @@
+"""Faults of a scene instance that every run would have: models that cannot be used, and given poses that overlap.
+
+Nothing is sampled or stepped, and users' code is not executed. What depends on them is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.composition import World, compile_world
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import centred
+from robbdd_tools.world.model_files import usable
+from robbdd_tools.world.overlaps import refuse_overlaps
+from robbdd_tools.world.scene import Cast
+from robbdd_tools.world.simulation import Simulation
+from robbdd_tools.world.staging import Staging
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import ObjectModel, RobotModel
+    from robbdd_tools.catalog.executable import ModelSource, Realisation, SceneInstance
+    from robbdd_tools.world.pose import Pose
+
+SEEDS = (1, 2)
+"""Two seeds: a pose that differs between them is sampled."""
+
+
+@dataclass(slots=True)
+class _Placed:
+    """The elements of a scene instance with a model and a given pose."""
+
+    objects: dict[str, ObjectModel] = field(default_factory=dict[str, "ObjectModel"])
+    agents: dict[str, RobotModel] = field(default_factory=dict[str, "RobotModel"])
+    poses: dict[str, Pose] = field(default_factory=dict[str, "Pose"])
+
+
+def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
+    """Yield the faults of the models of a scene instance, of its poses, and the overlaps between given poses."""
+    instance = _without_code(instance)
+    try:
+        staging, other = (Staging(instance, seed) for seed in SEEDS)
+    except SceneError as error:
+        yield error
+        return
+    placed = _Placed()
+    for one in instance.elements:
+        try:
+            _place(one, staging, other, placed)
+        except SceneError as error:
+            yield error
+    try:
+        _refuse_overlaps(staging, placed)
+    except SceneError as error:
+        yield error
+
+
+def _without_code(instance: SceneInstance) -> SceneInstance:
+    """Return the instance without the models that users' code creates or that other findings are about."""
+    elements = (one for one in instance.elements if _is_known(usable_model(one.models, one.element)))
+    models = tuple(model for model in instance.models if model.kind != "python")
+    return replace(instance, models=models, elements=tuple(elements))
+
+
+def usable_model(models: tuple[ModelSource, ...], element: str) -> ModelSource | None:
+    """Return the model of an element that a run uses; ``None`` without any."""
+    try:
+        return usable(models, element)
+    except SceneError:
+        return None
+
+
+def _is_known(model: ModelSource | None) -> bool:
+    if model is None or model.kind == "python":
+        return False
+    catalog = load_catalog()
+    return model.kind != "catalog" or model.name in (catalog.objects.keys() | catalog.robots.keys())
+
+
+def _place(one: Realisation, staging: Staging, other: Staging, placed: _Placed) -> None:
+    """Add an element to the placed ones if its pose is given. Raises ``SceneError``."""
+    name = one.element
+    if one.is_agent:
+        robot, base = staging.robot(name), staging.base(name)
+        if robot is not None and base is not None and base == other.base(name):
+            placed.agents[name], placed.poses[name] = robot, base
+        return
+    model, pose = staging.object_model(name, carries=False), staging.pose(name)
+    if model is not None and pose is not None and pose == other.pose(name):
+        placed.objects[name], placed.poses[name] = centred(model), pose
+
+
+def _refuse_overlaps(staging: Staging, placed: _Placed) -> None:
+    """Raise ``Overlap`` if elements at their given poses overlap, and ``SceneError`` if they do not compile."""
+    cast = Cast(placed.objects, placed.agents, {}, {}, None, staging=staging)
+    poses = {name: pose for name in placed.objects if (pose := cast.pose(name)) is not None}
+    bases = {name: placed.poses[name] for name in placed.agents}
+    refuse_overlaps(Simulation(World(compile_world(cast, bases, poses), cast, bases, poses, SEEDS[0], 0)))

@@ -1,0 +1,92 @@
+"""Models that cannot be used and given poses that overlap are reported without a run, and while editing."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from kit import EXAMPLES
+from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
+from robbdd_tools.lsp.framing import Answer, Forget, Request
+from robbdd_tools.lsp.worker import Inbox, Worker
+from robbdd_tools.names.project import Project
+from robbdd_tools.workbench import scene_findings
+from robbdd_tools.workbench.model import load
+from robbdd_tools.workbench.scene_findings import SceneChecker
+
+ON_THE_TABLE, IN_THE_TABLE = "xyz: (-100, 500, 0) mm", "xyz: (-100, 500, -20) mm"
+MADE = "model five_model as mjcf { py { module: making, attr: five }"
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    """Return the scene instance of a copy of the example with an own robot."""
+    shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "cell")
+    return tmp_path / "cell" / "cell.scenex"
+
+
+def rewrite(path: Path, *changes: tuple[str, str]) -> None:
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+
+
+def found(path: Path) -> list[str]:
+    return [str(finding).partition(":")[2] for finding in load(path).scene_findings]
+
+
+def test_overlaps_and_unusable_models_are_reported_with_their_places(cell: Path) -> None:
+    rewrite(cell, (ON_THE_TABLE, IN_THE_TABLE), ('tool: "tcp"', 'tool: "tip"'))
+    unusable, overlap = found(cell.with_name("tidy.bddx"))
+    assert unusable.startswith("67:15: warning: five.xml has no site or body 'tip' for the tool; it has the sites tcp")
+    assert unusable.endswith(" [unusable-model]")
+    assert overlap == "65:10: warning: 'bin' and 'table' overlap by 20 mm: nothing may overlap at the start [overlap]"
+
+
+def test_code_that_makes_a_model_is_not_executed(cell: Path) -> None:
+    rewrite(cell, ("model five_model as mjcf {\n            sys path = 'five.xml'", MADE))
+    cell.with_name("making.py").write_text("from pathlib import Path\nPath(__file__).with_suffix('.ran').touch()\n")
+    assert found(cell) == []
+    assert not cell.with_name("making.ran").exists()
+
+
+def test_a_failed_examination_is_reported(cell: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scene_findings, "FIND", "robbdd_tools.agent.no_such_module")
+    (only,) = found(cell)
+    assert only.startswith("1:1: warning: the models and poses of this scene were not checked: ")
+    assert only.endswith("[scene-unchecked]")
+
+
+def test_an_edit_in_an_editor_is_examined_and_the_same_scene_only_once(
+    cell: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    uri, text = path_to_uri(cell), cell.read_text(encoding="utf-8").replace(ON_THE_TABLE, IN_THE_TABLE)
+    reading, writing = os.pipe()
+    with os.fdopen(reading, "rb") as stream, os.fdopen(writing, "wb"):
+        worker = Worker(Inbox[Request | Forget](stream))
+        worker.project.load(uri)
+
+        def answer(revision: int, edited: str) -> list[str]:
+            given = worker.answer(Request(revision, uri, {uri: (revision, edited)}, EditorShapes()))
+            assert isinstance(given, Answer)
+            assert given.error == ""
+            return [entry.code for entry in given.diagnostics]
+
+        assert answer(1, text) == ["overlap"]
+        monkeypatch.setattr(scene_findings, "FIND", "robbdd_tools.agent.no_such_module")
+        assert answer(2, f"{text}// The end.\n") == ["overlap"]
+        assert answer(3, f"// The beginning.\n{text}") == ["scene-unchecked"]
+
+
+def test_a_scene_with_errors_is_not_examined(cell: Path) -> None:
+    rewrite(cell, (ON_THE_TABLE, IN_THE_TABLE), ("wrt: <top.edge>", "wrt: <top.rim>"))
+    project = Project()
+    project.load(path_to_uri(cell))
+    assert SceneChecker().findings(project.snapshot(), path_to_uri(cell)) == list[Diagnostic]()
