@@ -39,7 +39,32 @@ async def test_a_file_that_is_open_by_another_spelling_is_the_one_that_others_im
     client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
     editor.uri = main
     editor.open(MODEL)
+    assert await _definition(client, editor) == [scene]
+    assert await editor.diagnostics() == []
+
+
+async def test_two_names_of_one_file_are_one_file_and_the_one_that_is_open_is_answered(
+    client: LanguageClient, editor: Editor, tmp_path: Path
+) -> None:
+    # Where case matters, two names of one file stand in for a file system that ignores case.
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "Lab.scene").hardlink_to(tmp_path / "lab.scene")
+    (tmp_path / "main.bdd").write_text(MODEL, encoding="utf-8")
+    opened, other = path_to_uri(tmp_path / "Lab.scene"), path_to_uri(tmp_path / "lab.scene")
+    editor.uri = path_to_uri(tmp_path / "main.bdd")
+    editor.open(MODEL)
+    assert await _definition(client, editor) == [other]
+    text = f"\n\n{SCENE}"
+    item = types.TextDocumentItem(uri=opened, language_id="robbdd-scene", version=1, text=text)
+    client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+    assert await _definition(client, editor) == [opened]
+    asked = types.DocumentSymbolParams(text_document=types.TextDocumentIdentifier(uri=other))
+    first = (await client.text_document_document_symbol_async(asked) or [])[0]
+    assert isinstance(first, types.DocumentSymbol)
+    assert first.range.start.line == 2
+
+
+async def _definition(client: LanguageClient, editor: Editor) -> list[str]:
     found = await client.text_document_definition_async(types.DefinitionParams(**editor.at("arms.panda")))
     assert isinstance(found, list)
-    assert [place.uri for place in found if isinstance(place, types.Location)] == [scene]
-    assert await editor.diagnostics() == []
+    return [place.uri for place in found if isinstance(place, types.Location)]

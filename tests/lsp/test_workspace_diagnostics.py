@@ -16,6 +16,7 @@ from robbdd_tools.lsp.convert import Converter
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.workspace_diagnostics import WorkspaceDiagnostics
+from robbdd_tools.names.project import Project
 
 PATIENCE = 10.0
 
@@ -49,6 +50,7 @@ class _Server:
 
     pulls = True
     convert = Converter()
+    project = Project()
 
     def __init__(self, folder: Path) -> None:
         self.workspace = self

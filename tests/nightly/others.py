@@ -21,8 +21,10 @@ SMOKE = (
     "tests/graph/test_shapes.py",
     "tests/gherkin/test_templates.py",
     "tests/gherkin/test_variations.py",
+    "tests/gherkin/test_select.py",
     "tests/graph/test_foreign.py",
     "tests/traces/test_mcap_file.py",
+    "tests/logs/test_open_log.py",
     "tests/world/test_picture.py",
     "tests/agent/test_behaviour_tree.py",
     "tests/agent/test_process.py",
@@ -60,7 +62,7 @@ def _with_versions(resolution: str) -> str:
         _call(str(uv.with_name("python")), "-m", "pip", "install", "--quiet", "uv")
         _call(str(uv), "venv", "--quiet", "--python", sys.executable, str(folder / "venv"))
         install = (str(uv), "pip", "install", "--quiet", "--python", str(python), "--resolution", resolution)
-        _call(*install, "--editable", ".[video,fast-queries,pytest]")
+        _call(*install, "--editable", ".[video,fast-queries,logs,pytest]")
         # The tests' own tools are installed as they are newest, around the versions that are tested.
         frozen = folder / "frozen.txt"
         frozen.write_text(_call(str(uv), "pip", "freeze", "--python", str(python), "--exclude-editable"))

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from robbdd_tools.base.limits import MIB, MODEL_SIZE, Limit
+from robbdd_tools.base.stored_names import alike_path
 from robbdd_tools.base.uris import path_of, uri_of
 
 # Windows lacks this flag; there, no path in a folder names a pipe.
@@ -181,15 +182,18 @@ def _not_regular(path: Path, status: os.stat_result) -> Unreadable | None:
 def _failed(path: Path, error: OSError) -> Unreadable:
     match error.errno:
         case errno.ENOENT:
-            return Unreadable("file-missing", f"there is no file '{path.name}' in {path.parent}{_dangling(path)}")
+            return Unreadable("file-missing", f"there is no file '{path.name}' in {path.parent}{_hint(path)}")
         case errno.ELOOP:
             return Unreadable("file-unreadable", f"'{path.name}' cannot be read: its symbolic links form a loop")
         case _:
             return Unreadable("file-unreadable", f"'{path.name}' cannot be read: {error.strerror or error}")
 
 
-def _dangling(path: Path) -> str:
-    return f": it is a symbolic link to {path.readlink()}, which does not exist" if path.is_symlink() else ""
+def _hint(path: Path) -> str:
+    if path.is_symlink():
+        return f": it is a symbolic link to {path.readlink()}, which does not exist"
+    alike = alike_path(path)
+    return "" if alike is None else f", but there is {alike}: upper and lower case letters differ"
 
 
 def _too_large(name: str, limit: Limit, fact: str) -> Unreadable:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, NewFile
 from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.stored_names import without_case
 from robbdd_tools.checks.finding import MAX_OFFERED
 from robbdd_tools.checks.lines import import_removal
 from robbdd_tools.features.quoted_completion import MODEL_ENDINGS
@@ -129,14 +130,15 @@ def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
 def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
     """Yield the relative paths of files whose names are similar to the written one."""
     paths = sorted(path for found in files if (path := import_path(uri, found)) is not None)
+    paths.sort(key=lambda path: without_case(path) != without_case(written))
     stems = list(dict.fromkeys(map(_stem, paths)))
     for stem in get_close_matches(_stem(written), stems, n=MAX_OFFERED, cutoff=MIN_ALIKE):
         yield from (path for path in paths if _stem(path) == stem and path != written)
 
 
 def _stem(path: str) -> str:
-    """Return the name of a file without folder and extension."""
-    return _name(path).partition(".")[0]
+    """Return the name of a file without folder, extension, and upper case letters."""
+    return without_case(_name(path).partition(".")[0])
 
 
 def _name(path: str) -> str:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import FileState, file_state, read_text
+from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.features.workspace_files import MAX_FILES
 from robbdd_tools.names.imports import import_uri, reached
 
@@ -21,20 +22,24 @@ class ImportGraph:
     """Maps each file on disk, by URI, to the files that import it directly."""
 
     users: Mapping[str, frozenset[str]]
+    spellings: Spellings = field(default_factory=Spellings)
 
     @classmethod
     def of(cls, files: Iterable[str]) -> ImportGraph:
         """Build the graph of some files. The imports of a file are cached until the file changes on disk."""
         users: dict[str, set[str]] = {}
-        for uri in files:
+        # The files are first, so that their names on the disk stand for them, whatever imports write.
+        spellings = Spellings()
+        importing = [spellings.of(uri) for uri in files]
+        for uri in importing:
             checkpoint()
             for imported in imports_on_disk(uri):
-                users.setdefault(imported, set()).add(uri)
-        return cls({uri: frozenset(found) for uri, found in users.items()})
+                users.setdefault(spellings.of(imported), set()).add(uri)
+        return cls({uri: frozenset(found) for uri, found in users.items()}, spellings)
 
     def importers(self, uri: str) -> frozenset[str]:
         """Return the files that import a file, directly or indirectly."""
-        return reached(self.users, uri)
+        return reached(self.users, self.spellings.of(uri))
 
 
 def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.features.import_graph import imports_on_disk
 from robbdd_tools.names.imports import import_path
 from robbdd_tools.names.index import FileIndex, ImportPath, imports_of
@@ -23,15 +24,19 @@ class ImportLines:
 
 def affected_files(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
     """Yield the model files on disk that move, and those that directly import a file that moves."""
+    spellings = Spellings()
+    for old in moves:
+        spellings.of(old)
     for uri in files:
-        imported = imports_on_disk(uri)
+        imported = [spellings.of(one) for one in imports_on_disk(uri)]
         path = uri_to_path(uri)
         if path is None or not imported or all(moved(one, moves) == one for one in (uri, *imported)):
             continue
         text = read_text(path)
         if isinstance(text, str):
             document = Document(uri, 0, text)
-            yield ImportLines(document, imports_of(document))
+            links = imports_of(document)
+            yield ImportLines(document, tuple(replace(link, uri=spellings.of(link.uri)) for link in links))
 
 
 def import_edits(files: Iterable[FileIndex | ImportLines], moves: Mapping[str, str]) -> list[Edit]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, cast
 
@@ -13,10 +13,13 @@ from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams, JsonRpcInva
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.protocol.json_rpc import JsonRPCNotification
 
+from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.base.uris import canonical_uri
 from robbdd_tools.lsp.transport import end_soon
 
 _LOG = logging.getLogger(__name__)
+_DOCUMENTS = frozenset((types.TEXT_DOCUMENT_DID_OPEN, types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE))
+"""Notifications about a document that the client names; its URI stands for the file while it is open."""
 
 
 class Protocol(LanguageServerProtocol):
@@ -62,9 +65,14 @@ class Protocol(LanguageServerProtocol):
         return JsonRpcInvalidRequest("the server is shut down: only 'exit' may follow")
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """Parse a message. A request with invalid parameters is answered here, because pygls does not answer it."""
+        """Parse a message. A request with invalid parameters is answered here, because pygls does not answer it.
+
+        pygls also calls this for each object inside a message, before the message.
+        """
+        if "jsonrpc" not in data:
+            return data
         try:
-            return super().structure_message(with_canonical_uris(data))
+            return super().structure_message(self._with_our_uris(data))
         except JsonRpcException as error:
             if "id" in data and "method" in data:
                 reason = f"the parameters of {data['method']} do not match the protocol"
@@ -72,6 +80,21 @@ class Protocol(LanguageServerProtocol):
                 self._send_response(data["id"], error=refusal.to_response_error())
             _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
             return JsonRPCNotification(method="$/unreadable", jsonrpc=self.VERSION, params=None)
+
+    def _with_our_uris(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Return a message in which each file has the URI that the server uses for it."""
+        # pygls declares the base class of the server only.
+        server: Any = self._server
+        spellings: Spellings = server.project.spellings
+        method = data.get("method")
+        if method not in _DOCUMENTS:
+            return with_canonical_uris(data, spellings.of)
+        message = with_canonical_uris(data)
+        uri = _document(message)
+        if method == types.TEXT_DOCUMENT_DID_OPEN and uri is not None:
+            # Requests may already be waiting behind this message.
+            spellings.open(uri)
+        return message
 
     def _execute_handler(
         self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: dict[str, Any] | None = None
@@ -104,15 +127,38 @@ class Protocol(LanguageServerProtocol):
         super()._send_data(data)
 
 
-def with_canonical_uris(message: Any) -> Any:
-    """Return a message in which each file has one canonical URI. The texts of documents are not changed."""
+def with_canonical_uris(message: Any, spelling: Callable[[str], str] = str) -> Any:
+    """Return a message in which each file has one canonical URI. The texts of documents are not changed.
+
+    ``spelling`` chooses among the URIs that lead to the same file. The new URI of a file that is renamed is not
+    replaced: only upper and lower case letters may change.
+    """
     match message:
         case str():
-            return canonical_uri(message)
+            uri = canonical_uri(message)
+            return spelling(uri) if uri.startswith("file:") else uri
         case dict():
             fields = cast("dict[str, Any]", message)
-            return {name: value if name == "text" else with_canonical_uris(value) for name, value in fields.items()}
+            return {name: _field(name, value, spelling) for name, value in fields.items()}
         case list():
-            return [with_canonical_uris(entry) for entry in cast("list[Any]", message)]
+            return [with_canonical_uris(entry, spelling) for entry in cast("list[Any]", message)]
         case _:
             return message
+
+
+def _document(message: Any) -> str | None:
+    match message:
+        case {"params": {"textDocument": {"uri": str(uri)}}}:
+            return uri
+        case _:
+            return None
+
+
+def _field(name: str, value: Any, spelling: Callable[[str], str]) -> Any:
+    match name:
+        case "text":
+            return value
+        case "newUri":
+            return with_canonical_uris(value)
+        case _:
+            return with_canonical_uris(value, spelling)

@@ -115,12 +115,13 @@ class WorkspaceDiagnostics:
         changed, self._changed = self._changed, set()
         everything, self._everything = self._everything, False
         roots = list(self._server.workspace.folders)
-        files = await asyncio.to_thread(model_files, roots)
+        spelling = self._server.project.spellings.of
+        files = list(map(spelling, await asyncio.to_thread(model_files, roots)))
         for gone in self._found.keys() - set(files):
             del self._found[gone]
             self._reached.pop(gone, None)
         # New imports of a changed file have not been reached from it yet.
-        imported = await asyncio.to_thread(imported_on_disk, changed)
+        imported = set(map(spelling, await asyncio.to_thread(imported_on_disk, changed)))
         for uri in files:
             is_new = everything or uri not in self._found or uri in imported
             if is_new or not changed.isdisjoint(self._reached.get(uri, ())):
@@ -148,7 +149,7 @@ class WorkspaceDiagnostics:
     async def _keep(self, answer: Answer) -> None:
         try:
             if not answer.error:
-                self._reached[answer.uri] = answer.reached
+                self._reached[answer.uri] = frozenset(map(self._server.project.spellings.of, answer.reached))
                 self._found[answer.uri] = await asyncio.to_thread(self._converted, answer)
         finally:
             self._asked.discard(answer.uri)
@@ -160,7 +161,7 @@ class WorkspaceDiagnostics:
         found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
         # Hints matter only while editing a file; elsewhere they would hide errors and warnings.
         for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
-            found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
+            found.setdefault(self._server.project.spellings.of(one.uri), []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
 
     def publish_soon(self) -> None:

@@ -23,11 +23,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ImportPath:
-    """The path of an import as written, with its URI. ``span`` is absolute and excludes the quotes."""
+    """The path of an import as written. ``span`` is absolute and excludes the quotes.
+
+    ``written`` is the URI of the path. ``uri`` is the URI that stands for the imported file, see ``Spellings``.
+    """
 
     span: Span
     text: str
     uri: str
+    written: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,5 +111,6 @@ def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[Import
             # text.
             written = document.text[span.start : span.end]
             meant = written if _WINDOWS_PATH.search(written) and BACKSLASH not in path.value else path.value
-            found.append(ImportPath(span, path.value, import_uri(document.uri, meant)))
+            uri = import_uri(document.uri, meant)
+            found.append(ImportPath(span, path.value, uri, uri))
     return tuple(found)

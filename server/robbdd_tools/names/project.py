@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
+from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
+from robbdd_tools.names.import_case import wrong_case
 from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached_from
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.reachability import Reachability, Source
@@ -23,9 +25,13 @@ MAX_RELATED = 20
 
 @dataclass
 class Project:
-    """Open documents, and files on disk. After every change, the next snapshot is a new revision."""
+    """Open documents, and files on disk. After every change, the next snapshot is a new revision.
+
+    A file that is named by several spellings of its URI is one file. The spelling of an open document stands for it.
+    """
 
     revision: int = 0
+    spellings: Spellings = field(default_factory=Spellings)
     _open: dict[str, Source] = field(default_factory=dict[str, Source])
     _disk: dict[str, Source] = field(default_factory=dict[str, Source])
     _analyses: dict[str, Resolved] = field(default_factory=dict[str, Resolved])
@@ -38,6 +44,9 @@ class Project:
 
     def open(self, uri: str, version: int, text: str) -> None:
         """Set the text of a document that is open in an editor. This is done when it is opened and on every change."""
+        if uri not in self._open:
+            for spelling in self.spellings.open(uri):
+                self._disk.pop(spelling, None)
         refused = too_large(uri.rsplit("/", 1)[-1], len(text))
         known = self._open.get(uri)
         previous = known if isinstance(known, FileIndex) else None
@@ -47,11 +56,13 @@ class Project:
     def close(self, uri: str) -> None:
         """Use the file on disk instead of the text of the closed document."""
         self._open.pop(uri, None)
+        self.spellings.close(uri)
         self.refresh(uri)
 
     def refresh(self, uri: str) -> None:
         """Drop the cached text of a file that may have changed on disk."""
-        self._disk.pop(uri, None)
+        for spelling in self.spellings.reset(uri):
+            self._disk.pop(spelling, None)
         self.revision += 1
 
     def texts(self) -> dict[str, tuple[int, str]]:
@@ -63,6 +74,9 @@ class Project:
         """Make exactly these documents the open ones, and read all other files again."""
         for uri in [uri for uri in self._open if uri not in texts]:
             del self._open[uri]
+        self.spellings.clear()
+        for uri in texts:
+            self.spellings.open(uri)
         for uri, (version, text) in texts.items():
             known = self._open.get(uri)
             if not isinstance(known, FileIndex) or known.document.text != text:
@@ -71,18 +85,20 @@ class Project:
 
     def has(self, uri: str) -> bool:
         """Return whether a file has been loaded, directly or as an import."""
-        return uri in self._open or uri in self._disk
+        spelling = self.spellings.of(uri)
+        return spelling in self._open or spelling in self._disk
 
     def load(self, uri: str) -> Source:
         """Return a file: the text in the editor if it is open, otherwise the file on disk.
 
         A file on disk is cached until ``refresh``.
         """
-        if uri in self._open:
-            return self._open[uri]
-        if uri not in self._disk:
-            self._disk[uri] = _read(uri)
-        return self._disk[uri]
+        spelling = self.spellings.of(uri)
+        if spelling in self._open:
+            return self._open[spelling]
+        if spelling not in self._disk:
+            self._disk[spelling] = _read(spelling)
+        return self._disk[spelling]
 
     def snapshot(self) -> Snapshot:
         """Return the current state of all files and of everything that they import."""
@@ -91,10 +107,20 @@ class Project:
         while waiting:
             uri = waiting.pop()
             if uri not in sources:
-                sources[uri] = source = self.load(uri)
+                sources[uri] = source = self._linked(uri, self.load(uri))
                 if isinstance(source, FileIndex):
                     waiting += [imported.uri for imported in source.imports]
-        return Snapshot(self.revision, sources, self._analyses, dict(self._joined))
+        return Snapshot(self.revision, sources, self._analyses, dict(self._joined), self.spellings)
+
+    def _linked(self, uri: str, source: Source) -> Source:
+        """Return a file with its imports leading to the URIs that stand for the imported files."""
+        of = self.spellings.of
+        if isinstance(source, Unreadable) or all(of(link.written) == link.uri for link in source.imports):
+            return source
+        imports = tuple(replace(link, uri=of(link.written)) for link in source.imports)
+        linked = replace(source, imports=imports)
+        (self._open if uri in self._open else self._disk)[uri] = linked
+        return linked
 
 
 def _read(uri: str) -> Source:
@@ -114,6 +140,7 @@ class Snapshot:
     _analyses: dict[str, Resolved]
     joined: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """Graph files that are parts of another one, by the URI of that one."""
+    spellings: Spellings = field(default_factory=Spellings)
 
     @cached_property
     def _files(self) -> dict[str, FileAnalysis]:
@@ -225,7 +252,16 @@ class Snapshot:
             for link in imports
             if link.problem is not None
         ]
-        return unusable + self._broken_imports(index, imports)
+        return unusable + self._misspelled(index, imports) + self._broken_imports(index, imports)
+
+    def _misspelled(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
+        """Report the imports that only a file system that ignores case can find."""
+        found: list[Diagnostic] = []
+        for link, path in zip(imports, index.imports, strict=True):
+            problem = wrong_case(path, self.spellings) if link.problem is None else None
+            if problem is not None:
+                found.append(Diagnostic(index.document.uri, link.span, Severity.WARNING, "import", problem))
+        return found
 
     def _import_problem(self, index: FileIndex, uri: str) -> str | None:
         if uri == index.document.uri:

@@ -272,8 +272,12 @@ def load_all(paths: Sequence[Path]) -> Model:
     """
     files = named_files(paths)
     project = Project()
+    distinct: dict[str, Path] = {}
     for file in files:
-        project.load(path_to_uri(file))
+        distinct.setdefault(project.spellings.of(path_to_uri(file)), file)
+    files = list(distinct.values())
+    for uri in distinct:
+        project.load(uri)
     first, *others = [file for file in files if graph_format(file.name)] or [Path()]
     if others:
         project.join(path_to_uri(first), list(map(path_to_uri, others)))
