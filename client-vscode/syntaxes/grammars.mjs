@@ -195,7 +195,7 @@ const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
   phrases(`${WORD}.rotation`, "quat", "euler", "direction-cosine"),
   phrases(DECLARE, "scene inst", "ktree inst", "ktree", "kgraph", "distrib", "model", "body", "joints", "frame"),
   phrases(DECLARE, "pose", "inertia", "gripper", "fixed", "revolute", "serial", "parallel", "camera", "force-torque", "imu"),
-  phrases(WORD, "actuation", "mimic", "offset", "limits", "polarity", "parent", "child", "as", "of", "to", "py"),
+  phrases(WORD, "actuation", "mimic", "offset", "limits", "polarity", "parent", "child", "as", "of", "on", "to", "py", "friction"),
   phrases(WORD, "map body", "map tree", "catalog", "obj set", "agn set", "ws set", "obj", "agn", "ws"),
 ]);
 

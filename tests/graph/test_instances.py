@@ -53,6 +53,8 @@ scene inst (ns=s) bench_mjc {
             velocity: (1, 2) rad/s
         }
     }
+    friction of obj set <washers> on agn <arms.panda>: 0.1
+    friction of obj <parts.nut> on obj <washers.washer0>: 0.25
 }
 """.replace("offset: OFFSET", "offset { xyz: (0, 0, 100) mm }")
 TURN = "euler { angles: (0, 0, 90) unit: deg }"
@@ -86,6 +88,21 @@ def test_models_belong_to_the_elements_and_to_each_of_a_set() -> None:
 def test_an_arm_has_its_tool_gripper_and_limits_in_si_units() -> None:
     arms = [model.arm for one in instance().elements for model in one.models if model.arm is not None]
     assert arms == [ArmModel("tcp", "grip", 0.04, 0.0, ("a", "b"), 0.08, (0.0, 1.5), (1.0, 2.0))]
+
+
+def test_an_arm_may_leave_its_data_to_its_file() -> None:
+    whole = SCENEX[SCENEX.index("            tool:") : SCENEX.index("        }\n    }\n    friction")]
+    gripper = instance_of(SCENEX.replace("ORIENTATION", TURN).replace(whole, "gripper { close: 255 }\n"))
+    assert [m.arm for one in gripper.elements for m in one.models if m.arm] == [ArmModel(closed=255.0)]
+    nothing = instance_of(SCENEX.replace("ORIENTATION", TURN).replace(whole, ""))
+    assert {model.arm for one in nothing.elements for model in one.models} == {None}
+    assert [one.is_agent for one in nothing.elements if one.element.endswith("panda")] == [True]
+
+
+def test_the_friction_of_a_set_is_that_of_each_pair() -> None:
+    found = [(one.first, one.second, one.coefficient) for one in instance().frictions]
+    washers = [(f"{ENV}washer{number}", f"{ENV}panda", 0.1) for number in range(3)]
+    assert found == [*washers, (f"{ENV}nut", f"{ENV}washer0", 0.25)]
 
 
 def test_mappings_lead_to_bodies_and_trees_of_the_graph() -> None:

@@ -80,6 +80,8 @@ DAMAGE: dict[str, list[str]] = {
     "quantifier-clauses": ["set t:forall-sort.all.all bdd:has-clause ()"],
     "quantifier-set": ["- t:forall-sort.all bdd:in-set", "+ t:forall-sort.all bdd:in-set t:var-robot"],
     "quantifier-variable": ["+ t:forall-sort.all bdd:ref-variable t:var-robot"],
+    "pair-first": ["+ t:pair a rbw:PairFriction"],
+    "pair-second": ["+ t:pair a rbw:PairFriction"],
     "realisation-element": ["+ t:realised a rbw:Realisation"],
     "row-width": [f"set {TABLE} bdd:rows ((lab:nut))"],
     "scenario-behaviour": ["- t:sort-scenario bhv:of-behaviour"],

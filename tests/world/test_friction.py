@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation, SceneInstance
+from robbdd_tools.catalog.executable import Friction, Implementation, ModelSource, Origin, Realisation, SceneInstance
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.engine import TICK, mujoco
@@ -114,6 +114,27 @@ def test_two_fingers_hold_up_to_twice_friction_times_force(
     assert slip < 1e-3 if share < 1 else slip > 0.05
 
 
+def with_friction(scene: SceneSpec, one: str, other: str, coefficient: float) -> ScenarioSpec:
+    """Return a scenario whose scene instance states the friction of a pair of elements."""
+    instance = SceneInstance("x:cell", frictions=(Friction(one, other, coefficient),))
+    behaviour = Implementation("x:own", "catalog", "pick-place")
+    return replace(scenario(scene), execution=ExecutionSpec("x:run", "x:run", behaviour, instance))
+
+
+@pytest.mark.parametrize("share", [1 - MARGIN, 1 + MARGIN])
+def test_the_stated_friction_of_a_pair_replaces_the_smaller_one_of_both(share: float) -> None:
+    scene = bench(PANDA, CUBE, friction=0.6, mass=share * 2 * 0.2 * 10.0 / GRAVITY)
+    slip = Held(Execution(with_friction(scene, PANDA, CUBE, 0.2), []).simulation, CUBE, 10.0).slip()
+    assert slip < 1e-3 if share < 1 else slip > 0.05
+
+
+@pytest.mark.parametrize("stated", [0.1, 0.4])
+def test_a_part_slides_on_a_board_as_far_as_the_stated_friction_lets_it(stated: float) -> None:
+    course = Execution(with_friction(bench(PANDA, CUBE, friction=0.2), BENCH, CUBE, stated), [])
+    places = slide(course.simulation, CUBE, 0.5)
+    assert places[-1] - places[0] == pytest.approx(0.5**2 / (2 * stated * GRAVITY), rel=0.06)
+
+
 @pytest.mark.parametrize(("agent", "force"), [(PANDA, 15.0), (KINOVA, 20.0)])
 def test_a_gripper_keeps_to_its_documented_force(agent: str, force: float) -> None:
     held = Held(Execution(scenario(bench(agent, CUBE)), []).simulation, CUBE)
@@ -147,7 +168,11 @@ def test_a_part_that_slips_is_lost(friction: float, mass: float, carried: bool) 
 def pushed(thing: str, speed: float, *config: ConfigSpec) -> list[float]:
     """Return the positions (m) of an object on the bench, tick by tick, after a push along y."""
     scene = replace(bench(PANDA, thing), config=config)
-    simulation = Execution(scenario(scene), []).simulation
+    return slide(Execution(scenario(scene), []).simulation, thing, speed)
+
+
+def slide(simulation: Simulation, thing: str, speed: float) -> list[float]:
+    """Push an object to the left at a speed (m/s), and return its places (m) until it rests."""
     start = int(simulation.model.body(thing).dofadr[0])
     simulation.data.qvel[start + 1] = speed
     places = [float(simulation.pose(thing)[0][1])]

@@ -172,18 +172,19 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class ArmModel:
-    """Data about an arm that its model file lacks but that is needed for picking. Names are those in the file.
+    """Data about an arm that replace those found in its model file. Names are those in the file.
 
-    ``open`` and ``closed`` are values of the gripper's actuator. ``stroke`` (m) is the widest opening between the
-    ``pads``. ``home`` (rad) and ``velocity`` (rad/s) have one number for each joint; they are empty if not given.
+    Empty names, ``None`` and zeros mean that the file decides. ``open`` and ``closed`` are values of the gripper's
+    actuator. ``stroke`` (m) is the widest opening between the ``pads``, or the diameter of a suction cup, which is a
+    single pad. ``home`` (rad, m for a sliding joint) and ``velocity`` (rad/s, m/s) have one number for each joint.
     """
 
-    tool: str
-    actuator: str
-    open: float
-    closed: float
-    pads: tuple[str, ...]
-    stroke: float
+    tool: str = ""
+    actuator: str = ""
+    open: float | None = None
+    closed: float | None = None
+    pads: tuple[str, ...] = ()
+    stroke: float = 0.0
     home: tuple[float, ...] = ()
     velocity: tuple[float, ...] = ()
 
@@ -221,6 +222,16 @@ class Realisation:
 
 
 @dataclass(frozen=True, slots=True)
+class Friction:
+    """The coefficient of sliding friction between two elements, instead of the smaller one of their own."""
+
+    first: str
+    second: str
+    coefficient: float
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class SceneInstance:
     """An executable scene: models of the whole scene, models of its elements, and the placements of bodies.
 
@@ -237,3 +248,4 @@ class SceneInstance:
     anchor: str = ""
     origin: Origin | None = None
     scene: str = ""
+    frictions: tuple[Friction, ...] = ()

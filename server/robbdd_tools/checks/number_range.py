@@ -45,6 +45,7 @@ class _Quantity:
         return above_low and value <= self.high and not (self.whole and value % 1)
 
 
+_FRICTION = _Quantity("a friction", low=setting_of("friction").low, high=setting_of("friction").high)
 _RATE = _Quantity("an update rate", above=True)
 _REPEAT = _Quantity("the number of repetitions", low=1.0, whole=True)
 _SEED = _Quantity("a seed", high=setting_of("seed").high, whole=True)
@@ -78,6 +79,8 @@ def _measured(declaration: Declaration) -> tuple[tuple[tree.Number, _Quantity], 
 
 def _quantities(node: tree.Node) -> Iterator[_Measured]:
     match node:
+        case tree.PairFriction():
+            yield node.value, _FRICTION
         case tree.Policy():
             yield node.horizon, _Quantity("a horizon")
         case tree.GroundTruth():

@@ -104,7 +104,10 @@ class SpecWriter:
 
     def _instance(self, scene: SceneInstance) -> SceneInstance:
         elements = tuple(replace(one, element=self._curie(one.element)) for one in scene.elements)
-        return replace(scene, elements=elements)
+        frictions = tuple(
+            replace(one, first=self._curie(one.first), second=self._curie(one.second)) for one in scene.frictions
+        )
+        return replace(scene, elements=elements, frictions=frictions)
 
     def _policy(self, policy: Policy) -> Policy:
         return replace(policy, observations=tuple(self._observation(one) for one in policy.observations))

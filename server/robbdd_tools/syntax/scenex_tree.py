@@ -77,37 +77,30 @@ class Mapping(Node):
 
 @dataclass(frozen=True, slots=True)
 class Gripper(Node):
-    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: a two-finger gripper."""
+    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: fingers, or a suction cup."""
 
-    actuator: Text
-    open: Number
-    close: Number
+    actuator: Text | None
+    open: Number | None
+    close: Number | None
     pads: tuple[Text, ...]
-    stroke: Number
-    stroke_unit: str
-
-
-@dataclass(frozen=True, slots=True)
-class Arm(Node):
-    """``tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s``: data of a robot arm that can pick."""
-
-    tool: Text
-    gripper: Gripper
-    home: Vector | None
-    home_unit: str | None
-    velocity: Vector | None
-    velocity_unit: str | None
+    stroke: Number | None
+    stroke_unit: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class Model(Node):
-    """``model name as mjcf { source mappings arm }``."""
+    """``model name as mjcf { source mappings tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s }``."""
 
     name: Name
     kind: str
     source: ModelSource
     mappings: tuple[Mapping, ...]
-    arm: Arm | None
+    tool: Text | None
+    gripper: Gripper | None
+    home: Vector | None
+    home_unit: str | None
+    velocity: Vector | None
+    velocity_unit: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +136,19 @@ class Modelled(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class PairFriction(Node):
+    """``friction of obj <…> on agn <…>: 0.3``: the sliding friction between two elements or sets."""
+
+    first: Ref
+    second: Ref
+    value: Number
+
+
+@dataclass(frozen=True, slots=True)
 class SceneInstance(Node):
     """``scene inst (ns=…) name { scene: <…> … }``."""
 
     namespace: NamespaceArgument
     name: Name
     scene: Ref
-    entries: tuple[Graph | Model | Modelled, ...]
+    entries: tuple[Graph | Model | PairFriction | Modelled, ...]

@@ -108,6 +108,8 @@ def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Ite
                 yield _symbol(path, entry.name, SymbolKind.SENSOR, entry.span, None)
             case tree.Modelled():
                 yield from _instance_parts(entry, path)
+            case tree.PairFriction():
+                pass
 
 
 def _tree_parts(owner: tree.KinematicTree | tree.Graph, path: str) -> Iterator[Symbol]:

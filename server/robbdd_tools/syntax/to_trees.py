@@ -188,6 +188,7 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
         _given(tree.Modelled),
     ),
     **dict.fromkeys(("BodyMapping", "TreeMapping"), _given(tree.Mapping)),
+    **dict.fromkeys(("FrictionObject", "FrictionObjectSet", "FrictionAgent", "FrictionAgentSet"), _inner("reference")),
     "ForceTorque": _given(tree.Sensor, kind="force-torque"),
     "Imu": _given(tree.Sensor, kind="imu"),
     "ObservedTarget": _inner("target"),

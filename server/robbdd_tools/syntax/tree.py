@@ -114,7 +114,6 @@ from robbdd_tools.syntax.scene_tree import (
     Text,
 )
 from robbdd_tools.syntax.scenex_tree import (
-    Arm,
     Camera,
     Distribution,
     Gripper,
@@ -123,6 +122,7 @@ from robbdd_tools.syntax.scenex_tree import (
     Modelled,
     ModelSource,
     Normal,
+    PairFriction,
     RosPath,
     SceneInstance,
     Sensor,
@@ -161,7 +161,6 @@ ChunkTree = DeclarationTree | Variant
 __all__ = [
     "Actuation",
     "After",
-    "Arm",
     "Assignment",
     "Axes",
     "Before",
@@ -227,6 +226,7 @@ __all__ = [
     "Observation",
     "Occurrence",
     "Orientation",
+    "PairFriction",
     "ParallelChains",
     "PhraseUse",
     "Polarity",

@@ -78,7 +78,7 @@ def _with_short_names(instance: SceneInstance) -> SceneInstance:
         replace(one, element=name) if local.count(name) == 1 else one
         for one, name in zip(instance.elements, local, strict=True)
     )
-    return replace(instance, elements=tuple(elements))
+    return replace(instance, elements=tuple(elements), frictions=())
 
 
 def _file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:

@@ -17,7 +17,7 @@ from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.friction import pair_declared, pair_pads, rank_by_friction
+from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, rank_by_friction
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
@@ -133,6 +133,9 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
     pair_pads(spec, pads, loose)
     if cast.staging is not None:
         pair_declared(spec, cast.staging.pairs_of_elements())
+        shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
+        faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
+        pair_given(spec, cast.staging.frictions, shapes | faces)
     rank_by_friction(spec, pads)
     try:
         with warnings.catch_warnings():

@@ -7,11 +7,12 @@ file gives one geom a higher ``priority``, it takes only that geom's.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import Friction
     from robbdd_tools.world.staging import DeclaredPair
 
 
@@ -65,3 +66,32 @@ def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> 
         pair = spec.add_pair(geomname1=first, geomname2=second)
         for name, value in declared.parameters.items():
             setattr(pair, name, value)
+
+
+def pair_given(spec: Any, frictions: Iterable[Friction], geoms: Mapping[str, list[str]]) -> None:
+    """Give pairs of elements the sliding friction that a scene instance states.
+
+    ``geoms`` are the names of the geoms of each element that is present; those of an agent are its gripping faces.
+    Torsional friction (m) keeps its ratio to the sliding friction. Stiffness is that of the pads, or of the smoother
+    geom.
+    """
+    declared: dict[frozenset[str], Any] = {frozenset((pair.geomname1, pair.geomname2)): pair for pair in spec.pairs}
+    for friction in frictions:
+        for names in product(geoms.get(friction.first, ()), geoms.get(friction.second, ())):
+            pair = declared.get(frozenset(names))
+            if pair is None:
+                pair = declared[frozenset(names)] = _pair_of(spec, *names)
+            sliding, _, torsion, *rolling = pair.friction
+            patch = torsion / sliding if sliding else 0.0
+            pair.friction = [friction.coefficient, friction.coefficient, friction.coefficient * patch, *rolling]
+
+
+def _pair_of(spec: Any, first: str, second: str) -> Any:
+    smoother, rougher = sorted((spec.geom(first), spec.geom(second)), key=lambda geom: float(geom.friction[0]))
+    pair = spec.add_pair(geomname1=first, geomname2=second)
+    pair.condim = max(int(smoother.condim), int(rougher.condim))
+    sliding = float(smoother.friction[0])
+    torsion, rolling = (max(float(smoother.friction[i]), float(rougher.friction[i])) for i in (1, 2))
+    pair.friction = [sliding, sliding, torsion, rolling, rolling]
+    pair.solref, pair.solimp = smoother.solref, smoother.solimp
+    return pair

@@ -29,7 +29,7 @@ def prepared_robot(key: str) -> Any | None:
 def robot_from(source: ModelSource, name: str) -> RobotModel:
     """Return the arm in a file, with missing servos and names added; raises ``SceneError``."""
     arm = source.arm
-    if arm is None:
+    if arm is None or not arm.tool or not arm.actuator or not arm.pads or arm.open is None or arm.closed is None:
         wanted = "'tool: \"…\" gripper { … }' in its model block"
         raise SceneError(f"'{name}' cannot pick without a tool and a gripper: add {wanted}", origin=source.origin)
     spec = load(source)

@@ -57,6 +57,7 @@ class Staging:
     def __init__(self, instance: SceneInstance, seed: int) -> None:
         """Raises ``SceneError`` if a model of the whole scene cannot be loaded."""
         self._elements = {one.element: one for one in instance.elements}
+        self.frictions = instance.frictions
         self._frames = Frames(instance, seed)
         self._found: dict[str, FromFile] = {}
         self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]

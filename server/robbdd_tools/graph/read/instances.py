@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import product
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.executable import (
     ArmModel,
     Body,
+    Friction,
     Law,
     Link,
     ModelSource,
@@ -33,6 +35,7 @@ _LAWS = {
     "rbw:NormalDistribution": "normal",
 }
 _POSE_TERMS = ("rbw:with-respect-to", "rbw:position-sample", "rbw:orientation-sample")
+_GRIPPER = ("rbw:gripper-open", "rbw:gripper-closed", "rbw:stroke-metres")
 _JOINTS = {"rbw:FixedJoint": "fixed", "rbw:RevoluteJoint": "revolute"}
 
 
@@ -82,6 +85,7 @@ class InstanceReader:
             next(iter([*roots, *(frame for frame in frames if frame not in placed)]), ""),
             self._places(node),
             next(iter(records.iris(records.all(node, "rbw:scene"))), ""),
+            tuple(pair for part in self._list(node, "rbw:frictions") for pair in self._friction(part)),
         )
 
     def _list(self, node: str, term: str) -> tuple[Iri, ...]:
@@ -197,12 +201,27 @@ class InstanceReader:
 
     def _arm(self, node: Iri) -> ArmModel | None:
         records = self._records
-        tool = records.text(node, "rbw:tool")
-        if not tool:
-            return None
-        pads = tuple(str(records.value(pad)) for pad in records.list_of(node, "rbw:gripper-pads"))
-        terms = ("rbw:gripper-open", "rbw:gripper-closed", "rbw:stroke-metres")
-        opened, closed, stroke = (number(records, node, term) or 0.0 for term in terms)
+        tool, actuator = (records.text(node, term) for term in ("rbw:tool", "rbw:gripper-actuator"))
+        try:
+            pads = tuple(str(records.value(pad)) for pad in records.list_of(node, "rbw:gripper-pads"))
+        except Incomplete:
+            pads = ()
+        opened, closed, stroke = (number(records, node, term) for term in _GRIPPER)
         home, velocity = self._numbers(node, "rbw:home"), self._numbers(node, "rbw:velocity-limits")
-        actuator = records.text(node, "rbw:gripper-actuator")
-        return ArmModel(tool, actuator, opened, closed, pads, stroke, home, velocity)
+        arm = ArmModel(tool, actuator, opened, closed, pads, stroke or 0.0, home, velocity)
+        return None if arm == ArmModel() else arm
+
+    def _friction(self, node: Iri) -> Iterator[Friction]:
+        """Yield the friction of each pair of elements that two elements or sets form."""
+        records = self._records
+        value = number(records, node, "rbw:coefficient")
+        try:
+            first, second = (self._members(records.one(node, term)) for term in ("rbw:first", "rbw:second"))
+        except Incomplete:
+            return
+        for one, other in product(first, second):
+            if value is not None and one != other:
+                yield Friction(one, other, value, self._places(node))
+
+    def _members(self, node: Iri) -> tuple[Iri, ...]:
+        return tuple(entry for entry in self._sets.get(node, (node,)) if isinstance(entry, Iri))

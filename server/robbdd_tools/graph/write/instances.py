@@ -103,14 +103,19 @@ class _InstanceWriter:
         sink.add_types(node, ["rbw:SceneInstance"], frame.at(root.name))
         sink.add(node, "rbw:scene", frame.target(root.scene), frame.at(root.scene))
         graphs: list[URIRef | None] = []
+        frictions: list[URIRef | None] = []
         for entry in root.entries:
             if isinstance(entry, tree.Graph):
                 graphs.append(self._graph(entry))
+            elif isinstance(entry, tree.PairFriction):
+                frictions.append(self._friction(sink.iri(f"{node}.friction{len(frictions)}"), entry))
             elif isinstance(entry, tree.Modelled):
                 self._element(node, entry)
         sink.add(node, "rbw:graphs", sink.make_list(graphs))
         sink.add(node, "rbw:models", sink.make_list(self._models(node, root.entries)))
         sink.add(node, "rbw:realisations", sink.make_list(self._elements))
+        if frictions:
+            sink.add(node, "rbw:frictions", sink.make_list(frictions))
 
     def _graph(self, graph: tree.Graph) -> URIRef | None:
         path = f"{self._root.name.text}.{graph.name.text}"
@@ -118,6 +123,15 @@ class _InstanceWriter:
         if node is not None:
             self._sink.add_types(node, ["rbw:KinematicGraph"], self._frame.at(graph.name))
             TreeWriter(self._frame, self._trees, graph, node, path, (self._root.name.text,)).write()
+        return node
+
+    def _friction(self, node: URIRef | None, pair: tree.PairFriction) -> URIRef | None:
+        sink, frame = self._sink, self._frame
+        if node is not None:
+            sink.add_types(node, ["rbw:PairFriction"], frame.at(pair))
+            for term, reference in (("rbw:first", pair.first), ("rbw:second", pair.second)):
+                sink.add(node, term, frame.target(reference), frame.at(reference))
+            sink.add(node, "rbw:coefficient", sink.literal(float(pair.value.value)), frame.at(pair.value))
         return node
 
     def _element(self, instance: URIRef, modelled: tree.Modelled) -> None:
@@ -162,8 +176,7 @@ class _InstanceWriter:
                 add_python(frame, node, source)
         mappings = [self._mapping(node, number, one) for number, one in enumerate(model.mappings)]
         sink.add(node, "rbw:mappings", sink.make_list(mappings))
-        if model.arm is not None:
-            self._arm(node, model.arm)
+        self._arm(node, model)
         return node
 
     def _mapping(self, model: URIRef, number: int, mapping: tree.Mapping) -> URIRef | None:
@@ -179,26 +192,36 @@ class _InstanceWriter:
             sink.mark_node(node, self._frame.at(where))
         return node
 
-    def _arm(self, model: URIRef, arm: tree.Arm) -> None:
-        sink, frame, gripper = self._sink, self._frame, arm.gripper
-        for term, text in (("tool", arm.tool), ("gripper-actuator", gripper.actuator)):
-            sink.add(model, f"rbw:{term}", sink.literal(text.value), frame.at(text))
-        stroke = float(gripper.stroke.value) * LENGTHS[gripper.stroke_unit]
-        for term, number, value in (
-            ("gripper-open", gripper.open, float(gripper.open.value)),
-            ("gripper-closed", gripper.close, float(gripper.close.value)),
-            ("stroke-metres", gripper.stroke, stroke),
-        ):
-            sink.add(model, f"rbw:{term}", sink.literal(value), frame.at(number))
-        sink.add(model, "rbw:gripper-pads", sink.make_list([sink.literal(pad.value) for pad in gripper.pads]))
+    def _arm(self, node: URIRef, model: tree.Model) -> None:
+        """Write the data on an arm that replace those in its file."""
+        sink, frame, gripper = self._sink, self._frame, model.gripper
+        if model.tool is not None:
+            sink.add(node, "rbw:tool", sink.literal(model.tool.value), frame.at(model.tool))
+        if gripper is not None:
+            self._gripper(node, gripper)
         for term, vector, unit in (
-            ("home", arm.home, arm.home_unit),
-            ("velocity-limits", arm.velocity, arm.velocity_unit),
+            ("home", model.home, model.home_unit),
+            ("velocity-limits", model.velocity, model.velocity_unit),
         ):
             if vector is not None:
                 factor = ANGLES[(unit or "rad").partition("/")[0]]
                 numbers: list[Node | None] = [sink.literal(number * factor) for number in numbers_of(vector)]
-                sink.add(model, f"rbw:{term}", sink.make_list(numbers), frame.at(vector))
+                sink.add(node, f"rbw:{term}", sink.make_list(numbers), frame.at(vector))
+
+    def _gripper(self, node: URIRef, gripper: tree.Gripper) -> None:
+        sink, frame = self._sink, self._frame
+        if gripper.actuator is not None:
+            name = sink.literal(gripper.actuator.value)
+            sink.add(node, "rbw:gripper-actuator", name, frame.at(gripper.actuator))
+        for term, number in (("gripper-open", gripper.open), ("gripper-closed", gripper.close)):
+            if number is not None:
+                sink.add(node, f"rbw:{term}", sink.literal(float(number.value)), frame.at(number))
+        if gripper.stroke is not None:
+            stroke = float(gripper.stroke.value) * LENGTHS[gripper.stroke_unit or "m"]
+            sink.add(node, "rbw:stroke-metres", sink.literal(stroke), frame.at(gripper.stroke))
+        if gripper.pads:
+            pads = sink.make_list([sink.literal(pad.value) for pad in gripper.pads])
+            sink.add(node, "rbw:gripper-pads", pads, frame.at(gripper))
 
     def _sensor(self, instance: URIRef, sensor: tree.Node) -> URIRef | None:
         sink, frame = self._sink, self._frame
