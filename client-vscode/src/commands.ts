@@ -1,7 +1,9 @@
 // The commands of the palette. Those of code lenses (robbdd.run, …) belong to the server.
 import * as vscode from "vscode";
 import type { Server } from "./client";
+import type { ComparisonView } from "./panels/comparison/view";
 import type { GraphView } from "./panels/graph/view";
+import type { HistoryView } from "./panels/history/view";
 import { recordingOf } from "./panels/replay/request";
 import type { ReplayView } from "./panels/replay/view";
 import type { StudyView } from "./panels/study/view";
@@ -12,6 +14,7 @@ import { newProject } from "./projects";
 import type { RunOptionsChooser } from "./runs/chooser";
 import type { RunMonitor } from "./runs/monitor";
 import { argumentsOf } from "./runs/options";
+import { askUntilFailure, tellFailure } from "./runs/untilFailure";
 import { openServerSetting } from "./settings";
 import { isRecord } from "./values";
 import type { TestingView } from "./testing/view";
@@ -23,18 +26,21 @@ export interface Views {
   readonly tests: TestingView;
   readonly replays: ReplayView;
   readonly studies: StudyView;
+  readonly histories: HistoryView;
+  readonly comparisons: ComparisonView;
 }
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
   chooser: RunOptionsChooser,
-  { previews, graphs, replays, studies, tests }: Views,
+  { previews, graphs, replays, studies, histories, comparisons, tests }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri }), RUNNABLE),
     "robbdd.runWithOptions": (target) => withModel(target, (uri) => runWithOptions(server, chooser, uri), RUNNABLE),
+    "robbdd.runUntilFailure": (target) => withModel(target, (uri) => runUntilFailure(server, replays, uri), RUNNABLE),
     "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
     "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
@@ -45,6 +51,8 @@ export function registerCommands(
         graphs.open(vscode.Uri.parse(uri));
       }),
     "robbdd.showStudy": (target) => withModel(target, (uri) => studies.choose(uri)),
+    "robbdd.showHistory": (target) => histories.open(target),
+    "robbdd.compareRuns": (target) => withModel(target, (uri) => comparisons.choose(uri), RUNNABLE),
     "robbdd.replayTest": (target) => replayTest(replays, tests, target),
     "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
     "robbdd.showReplay": (target) =>
@@ -75,6 +83,13 @@ async function runWithOptions(server: Server, chooser: RunOptionsChooser, uri: s
   const options = await chooser.choose(vscode.Uri.parse(uri));
   if (options !== undefined) {
     await server.execute("robbdd.run", { uri, ...argumentsOf(options) });
+  }
+}
+
+async function runUntilFailure(server: Server, replays: ReplayView, uri: string): Promise<void> {
+  const options = await askUntilFailure();
+  if (options !== undefined) {
+    tellFailure(await server.execute("robbdd.run", { uri, ...options }), (failed) => void replays.open({ uri, ...failed }));
   }
 }
 

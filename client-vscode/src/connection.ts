@@ -47,8 +47,8 @@ export function createClient(
     {
       documentSelector: languages.map((language) => ({ scheme: "file", language })),
       outputChannel: log,
-      initializationOptions: { pictures: true, replay: true, trusted: vscode.workspace.isTrusted },
-      markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
+      initializationOptions: { pictures: true, replay: true, history: true, trusted: vscode.workspace.isTrusted },
+      markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay", "robbdd.showHistory"] } },
       initializationFailedHandler: () => false,
       errorHandler: {
         // A broken pipe is followed by the close of the connection, which is handled there.

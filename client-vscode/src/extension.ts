@@ -3,7 +3,9 @@ import * as vscode from "vscode";
 import { LANGUAGES, Server } from "./client";
 import { registerCommands } from "./commands";
 import { noticeModels } from "./milestones";
+import { ComparisonView } from "./panels/comparison/view";
 import { GraphView } from "./panels/graph/view";
+import { HistoryView } from "./panels/history/view";
 import { ReplayView } from "./panels/replay/view";
 import { StudyView } from "./panels/study/view";
 import { PreviewView } from "./preview/view";
@@ -38,6 +40,8 @@ export function activate(context: vscode.ExtensionContext): void {
   const tests = new TestingView(started, runs, chooser);
   const replays = new ReplayView(started, context.extensionUri);
   const studies = new StudyView(started, replays, context.extensionUri);
+  const comparisons = new ComparisonView(started, replays, context.extensionUri);
+  const histories = new HistoryView(started, replays, comparisons, runs, context.extensionUri);
   server = started;
   context.subscriptions.push(
     log,
@@ -47,9 +51,11 @@ export function activate(context: vscode.ExtensionContext): void {
     graphs,
     replays,
     studies,
+    histories,
+    comparisons,
     tests,
     noticeModels(),
-    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, tests }, log),
+    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restartIfMoved();

@@ -9,14 +9,17 @@ import { command, openWindow } from "./window.kit";
 
 const HOSTILE = `"><script src="https://evil.example/x.js"></script><img src=x onerror=alert(1)><base href="https://evil.example/"> 'nonce-guessed'; script-src *`;
 const MODEL = Uri.joinPath(Uri.parse("file:///cell"), `${HOSTILE.replaceAll("/", ":")}.bdd`);
+const CLAUSE = { uri: MODEL.toString(), clause: HOSTILE };
 const PAGES: Readonly<Record<string, string>> = {
+  "robbdd.compareRuns": "comparison",
   "robbdd.showGraph": "graph",
+  "robbdd.showHistory": "history",
   "robbdd.showReplay": "replay",
   "robbdd.showStudy": "study",
 };
 const POLICY = /^default-src 'none'; script-src 'nonce-(?<nonce>[\w-]{22,})'; style-src https:\/\/\*\.pages\.example$/;
 
-/** Answer the requests of all panels with one run of one scenario, of such names. */
+/** Answer the requests of all panels with two runs of one scenario, of such names. */
 function answer(): void {
   const array = { shape: [], data: "" };
   const frames = { times: array, poses: array, bodies: [] };
@@ -24,8 +27,14 @@ function answer(): void {
   const scenario = { index: 0, name: HOSTILE, values: HOSTILE, verdict: "holds", repetition: 1, trace: true };
   const folder = "file:///cell/run";
   const counts = { holds: 1, violated: 0, unknown: 0, complete: true, state: "finished", finished: 1, total: 1, problem: null };
-  const runs = [{ run: 1, folder, path: HOSTILE, seed: 0, ...counts, scenarios: [scenario] }];
+  const stored = { run: 1, folder, path: HOSTILE, seed: 0, ...counts, scenarios: [scenario] };
+  const judged = { holds: 1, violated: 0, unknown: 0 };
+  const history = { clause: HOSTILE, name: HOSTILE, runs: [{ ...stored, began: "", judged, margin: 1, unit: HOSTILE, worst: 0, stale: false }] };
+  const runs = [stored, { ...stored, run: 2 }];
+  const comparison = { before: stored, after: stored, inputs: [HOSTILE], clauses: [], same: 1, flipped: 0, changes: [] };
   LanguageClient.answers.set("robbdd/runs", () => ({ runs }));
+  LanguageClient.answers.set("robbdd/history", () => history);
+  LanguageClient.answers.set("robbdd/compare", () => comparison);
   LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, scenario, frames, ...lists }));
   editor.files.set(`${folder}/results.json`, JSON.stringify({ complete: true, scenarios: [] }));
 }
@@ -34,7 +43,8 @@ function answer(): void {
 async function opened(name: string): Promise<WebviewPanel> {
   openWindow();
   answer();
-  await command(name, MODEL);
+  editor.choices.push("Run 1");
+  await command(name, name === "robbdd.showHistory" ? CLAUSE : MODEL);
   const [panel, ...others] = editor.panels;
   assert.ok(panel && others.length === 0, `${name} opened ${editor.panels.length} panels`);
   return panel;
@@ -73,7 +83,7 @@ test("every page allows its own script by a unique nonce, whatever names it show
 });
 
 test("a page restored in another window has its own nonce, too", async () => {
-  const state = { uri: MODEL.toString(), recording: { uri: MODEL.toString() }, studied: { uri: MODEL.toString(), run: 1 } };
+  const state = { uri: MODEL.toString(), recording: { uri: MODEL.toString() }, studied: { uri: MODEL.toString(), run: 1 }, choice: CLAUSE, pair: { uri: MODEL.toString(), before: 1, after: 2 } };
   const nonces: string[] = [];
   for (const script of [...Object.values(PAGES), ...Object.values(PAGES)]) {
     openWindow();

@@ -117,6 +117,10 @@ class Editor {
   /** Restores panels, by type. */
   readonly serializers = new Map<string, { deserializeWebviewPanel: (panel: WebviewPanel, state: unknown) => Promise<void> }>();
   readonly panels: WebviewPanel[] = [];
+  /** Messages that are no problems. */
+  readonly told: string[] = [];
+  /** The buttons that the user presses in those messages, one after the other. */
+  readonly pressed: string[] = [];
   /** Messages that say to the user what went wrong. */
   readonly problems: string[] = [];
   /** Tests that could not be run, each with the reason. */
@@ -150,6 +154,8 @@ class Editor {
     }
     this.panels.length = 0;
     this.problems.length = 0;
+    this.told.length = 0;
+    this.pressed.length = 0;
     this.errored.length = 0;
     this.passed.length = 0;
     this.choices.length = 0;
@@ -220,15 +226,24 @@ export const window = {
   },
   showErrorMessage: report,
   showWarningMessage: report,
-  showInformationMessage: nothing,
+  showInformationMessage: (message: string) => {
+    editor.told.push(message);
+    return Promise.resolve(editor.pressed.shift());
+  },
   showInputBox: ({ validateInput }: { readonly validateInput?: (text: string) => string | undefined }) => {
     const text = editor.typed.shift();
     const problem = text === undefined ? undefined : validateInput?.(text);
     return problem === undefined ? Promise.resolve(text) : report(problem);
   },
   showOpenDialog: nothing,
-  showQuickPick: (list: readonly { readonly label: string }[]) => {
+  showQuickPick: (
+    list: readonly { readonly label: string; readonly picked?: boolean }[],
+    options?: { readonly canPickMany?: boolean },
+  ) => {
     editor.lists.push(list);
+    if (options?.canPickMany === true) {
+      return Promise.resolve(list.filter(({ picked }) => picked === true));
+    }
     const end = editor.choices.shift();
     return Promise.resolve(end === undefined ? undefined : list.find(({ label }) => label.endsWith(end)));
   },
@@ -328,4 +343,4 @@ export const ProgressLocation = { Notification: 15 };
 export const StatusBarAlignment = { Left: 1 };
 export const TestRunProfileKind = { Run: 1 };
 export const TextEditorRevealType = { InCenterIfOutsideViewport: 2 };
-export const ViewColumn = { Active: -1, Beside: -2, One: 1, Two: 2 };
+export const ViewColumn = { Active: -1, Beside: -2, One: 1, Two: 2, Three: 3 };

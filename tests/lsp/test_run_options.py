@@ -108,6 +108,7 @@ def test_nothing_failed_where_only_others_did(tmp_path: Path) -> None:
         ({"only": [{"variant": VARIANT, "variations": ["1"]}]}, "no usable 'only'"),
         ({"only": [{"variant": VARIANT, "execution": 1}]}, "no usable 'only'"),
         ({"record": 1}, "'record': it must be true or false"),
+        ({"stop_on_failure": 1}, "'stop_on_failure': it must be true or false"),
         ({"bhv": {"built-in": 1}}, "'bhv': it must be an object"),
     ],
 )
@@ -123,4 +124,5 @@ def test_a_run_is_whole_unless_something_reduces_it() -> None:
     assert whole(seed=3, repeat=2, jobs=1, only=[{"variant": VARIANT}])
     for reduced in ({"first": 1}, {"sample": 1}, {"pairwise": 2}, {"where": "a=b"}, {"variation": 1}, {"failed": True}):
         assert not whole(**reduced)
+    assert not whole(stop_on_failure=True)
     assert not whole(only=[{"variant": VARIANT, "variations": [1]}])

@@ -193,6 +193,16 @@ async def test_a_failed_scenario_is_run_again_alone_and_others_keep_their_result
 
 
 @pytest.mark.physics
+async def test_a_run_that_stops_at_a_failure_leaves_no_results_of_what_it_did_not_execute(editor: Editor) -> None:
+    editor.open(short(editor).replace("after <evt-place-end>", "after <evt-pick-end>"))
+    answer = await execute(editor, "run", repeat=3, jobs=1, stop_on_failure=True)
+    assert (answer["failed"], answer["total"], answer["violated"], answer["unknown"]) == (0, 3, 1, 2)
+    assert (await hints(editor))["at-goal"].startswith("✗ −"), "one execution, and no other that is unknown"
+    kept = plain(await editor.client.protocol.send_request_async("robbdd/testResults", {}))["scenarios"]
+    assert len(kept) == 1
+
+
+@pytest.mark.physics
 async def test_the_lens_record_runs_a_scenario_and_pictures_what_it_violates(editor: Editor, tmp_path: Path) -> None:
     editor.open(short(editor).replace("after <evt-pick-end>", "after <evt-place-end>", 1))
     await editor.diagnostics("unused-event")

@@ -57,9 +57,9 @@ export class Panel<Outgoing extends object> implements vscode.Disposable {
   }
 }
 
-/** Open a new panel next to the text without taking the focus; from another panel, in its place. */
-export function beside(type: string, title: string): vscode.WebviewPanel {
+/** Open a new panel without taking the focus: in `column`, else next to the text or, from another panel, in its place. */
+export function beside(type: string, title: string, column?: vscode.ViewColumn): vscode.WebviewPanel {
   const fromPanel = vscode.window.tabGroups.activeTabGroup.activeTab?.input instanceof vscode.TabInputWebview;
-  const viewColumn = fromPanel ? vscode.ViewColumn.Active : vscode.ViewColumn.Beside;
+  const viewColumn = column ?? (fromPanel ? vscode.ViewColumn.Active : vscode.ViewColumn.Beside);
   return vscode.window.createWebviewPanel(type, title, { viewColumn, preserveFocus: true });
 }

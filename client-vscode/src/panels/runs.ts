@@ -40,7 +40,8 @@ export function outcome({ holds, violated, unknown, state, finished, total }: St
   return state === "finished" ? counts : `${counts} (${state === "stopped" ? "stopped at the first failure" : state}: ${extent})`;
 }
 
-function isRun(value: unknown): boolean {
+/** Whether a value is a stored run of this version. */
+export function isRun(value: unknown): value is StoredRun {
   return (
     isRecord(value) &&
     typeof value["run"] === "number" &&

@@ -5,6 +5,7 @@ import type { Recording } from "../panels/replay/messages";
 import type { RunOptionsChooser } from "../runs/chooser";
 import type { RunMonitor } from "../runs/monitor";
 import { argumentsOf } from "../runs/options";
+import { askUntilFailure } from "../runs/untilFailure";
 import { ContinuousRuns } from "./continuous";
 import { factory, normal } from "./display";
 import { ResultsElsewhere } from "./found";
@@ -22,6 +23,7 @@ export class TestingView implements vscode.Disposable {
   private readonly continuous: ContinuousRuns;
   private readonly run: vscode.TestRunProfile;
   private readonly withOptions: vscode.TestRunProfile;
+  private readonly untilFailure: vscode.TestRunProfile;
   private readonly record: vscode.TestRunProfile;
 
   constructor(
@@ -49,6 +51,9 @@ export class TestingView implements vscode.Disposable {
     this.run = controller.createRunProfile("Run", Run, (request, token) => this.start(request, token), true, undefined, true);
     this.withOptions = controller.createRunProfile("Run with Options…", Run, (request, token) =>
       this.startWithOptions(request, token),
+    );
+    this.untilFailure = controller.createRunProfile("Run until It Fails…", Run, (request, token) =>
+      this.startUntilFailure(request, token),
     );
     this.record = controller.createRunProfile("Run with Recording", Run, (request, token) =>
       this.runner.execute(request, token, "robbdd.record"),
@@ -87,7 +92,7 @@ export class TestingView implements vscode.Disposable {
   }
 
   dispose(): void {
-    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.withOptions, this.record, this.controller]) {
+    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.withOptions, this.untilFailure, this.record, this.controller]) {
       part.dispose();
     }
   }
@@ -117,6 +122,13 @@ export class TestingView implements vscode.Disposable {
     const options = file && (await this.chooser.choose(vscode.Uri.parse(file.uri)));
     if (options !== undefined) {
       await this.runner.execute(request, token, "robbdd.run", { options: argumentsOf(options) });
+    }
+  }
+
+  private async startUntilFailure(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {
+    const options = await askUntilFailure();
+    if (options !== undefined) {
+      await this.runner.execute(request, token, "robbdd.run", { options });
     }
   }
 

@@ -21,6 +21,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.run.recording import first_failure
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
@@ -70,7 +71,8 @@ class RunFollower:
         outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
         counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
         total, cancelled = len(self._results.scenarios), self._active.cancelled
-        return {"run": self._active.id, "total": total, "cancelled": cancelled, **counts}
+        failed = first_failure(self._results)
+        return {"run": self._active.id, "total": total, "cancelled": cancelled, "failed": failed, **counts}
 
     def _hear(self, message: RunMessage) -> None:
         self._loop.call_soon_threadsafe(self._take, message)
@@ -78,8 +80,14 @@ class RunFollower:
     def _conclude(self) -> None:
         """Close the scenarios that are still open, and remove results that no longer belong to the model."""
         ending = self._run.ending
+        stops = self._active.options.stop_on_failure
+        first = first_failure(self._results) if stops else None
         for judged in self._results.close(ending):
-            self._take(judged, open_after_cancel=self._active.cancelled)
+            self._take(judged, left_open=stops or self._active.cancelled)
+        for index, scenario in self._active.judged.items():
+            # The store does not keep executions after the first failure, whichever process was faster.
+            if first is not None and index > first:
+                self._ls.results.discard(scenario)
         if self._active.options.is_whole and not ending:
             for variant, begun in self._begun.items():
                 self._ls.results.drop_others(variant, {number for number, *_ in begun})
@@ -91,17 +99,17 @@ class RunFollower:
             scenario.mark_vacuous(self._results.vacuous())
         self._take(RunFinished(not ending))
 
-    def _take(self, message: RunMessage, *, open_after_cancel: bool = False) -> None:
+    def _take(self, message: RunMessage, *, left_open: bool = False) -> None:
         """Handle a message.
 
-        ``open_after_cancel`` is true for a clause that a cancelled run left open. Such a clause is unknown in the
-        report, but its verdict is not stored.
+        ``left_open`` is true for a clause that a cancelled run, or a run that stops at the first failure, left open.
+        Such a clause is unknown in the report, but its verdict is not stored.
         """
         self._results.apply(message)
         match message:
             case ScenarioStarted(index):
                 self._scenario(index)
-            case ClauseJudged() if not open_after_cancel:
+            case ClauseJudged() if not left_open:
                 self._judge(message)
             case UserCodeFailed(index, fault):
                 self._fault(index, fault)
@@ -110,7 +118,7 @@ class RunFollower:
                 self._report_progress()
             case _:
                 pass
-        params = for_client(self._active.id, self._text, self._results, message, cancelled=open_after_cancel)
+        params = for_client(self._active.id, self._text, self._results, message, cancelled=left_open)
         self._ls.protocol.notify(RUN_MESSAGE, params)
         if isinstance(message, RunStarted):
             for note in self._text.notes:

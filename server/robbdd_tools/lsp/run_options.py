@@ -53,6 +53,7 @@ class RunOptions:
     - ``failed``: select the scenarios that did not hold in their last run.
     - ``where``, ``first``, ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs``: as for ``robbdd run``.
     - ``scenex``: the path of a ``.scenex``, absolute or from the folder of the model.
+    - ``stop_on_failure``: execute nothing more after the first failure.
     - ``record``: render a picture of each violation.
     - ``token``: the name of the run in the messages about it.
     """
@@ -73,6 +74,7 @@ class RunOptions:
     jobs: int | None = None
     bhv: Mapping[str, str] = field(default_factory=dict[str, str])
     scenex: str | None = None
+    stop_on_failure: bool = False
 
     @classmethod
     def of(cls, argument: Mapping[str, Any]) -> RunOptions:
@@ -97,7 +99,9 @@ class RunOptions:
         """
         numbers = {self.variation, self.where, self.first, self.sample, self.pairwise}
         parts = (entry.get("variations") for entry in self.only or ())
-        return not self.failed and numbers == {None} and all(part is None for part in parts)
+        return (
+            not self.failed and not self.stop_on_failure and numbers == {None} and all(part is None for part in parts)
+        )
 
 
 def select(
@@ -217,7 +221,7 @@ def _is_substitution(value: object) -> bool:
 
 _FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
     **dict.fromkeys(("uri", "scenario", "where", "token", "scenex"), (_is_text, "a text")),
-    **dict.fromkeys(("failed", "record"), (_is_flag, "true or false")),
+    **dict.fromkeys(("failed", "record", "stop_on_failure"), (_is_flag, "true or false")),
     **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
     **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),
     "pairwise": (_is_strength, "2 or 3"),

@@ -68,7 +68,14 @@ async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     place, remark = await asyncio.to_thread(ls.stores.begin, options.uri)
     if remark:
         ls.warn(remark)
-    run = await asyncio.to_thread(begin_run, planned.plan, place, repeat=planned.repeat, jobs=options.jobs)
+    run = await asyncio.to_thread(
+        begin_run,
+        planned.plan,
+        place,
+        repeat=planned.repeat,
+        jobs=options.jobs,
+        stop_on_failure=options.stop_on_failure,
+    )
     return run, planned.text
 
 

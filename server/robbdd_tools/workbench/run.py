@@ -218,9 +218,16 @@ class Run(Recorded):
         self.ending = self.progress.ending
 
 
-def begin_run(plan: Plan, place: StoredRun, *, repeat: int | None = None, jobs: int | None = None) -> Run:
+def begin_run(
+    plan: Plan,
+    place: StoredRun,
+    *,
+    repeat: int | None = None,
+    jobs: int | None = None,
+    stop_on_failure: bool = False,
+) -> Run:
     """Prepare the run of a plan in a run folder that the caller has created. Raises the errors of ``Run.begin``."""
-    return Run.begin(plan, place, Policy.of(jobs=jobs), repeat=repeat)
+    return Run.begin(plan, place, Policy.of(jobs=jobs, stop_on_failure=stop_on_failure), repeat=repeat)
 
 
 def check_user_code(plan: Plan) -> None:

@@ -38,7 +38,7 @@ export class ReplayView implements vscode.Disposable {
   }
 
   /** Show the execution that `target` describes: a `Recording`, optionally with a clause to select. */
-  async open(target: unknown): Promise<void> {
+  async open(target: unknown, column?: vscode.ViewColumn): Promise<void> {
     const recording = recordingOf(target);
     if (recording === undefined) {
       return;
@@ -50,9 +50,9 @@ export class ReplayView implements vscode.Disposable {
     const clause = clauseOf(target);
     const open = this.replays.get(keyOf(trace));
     if (open === undefined) {
-      this.adopt(beside(TYPE, titleOf(trace)), exactly(recording, trace), trace, clause);
+      this.adopt(beside(TYPE, titleOf(trace), column), exactly(recording, trace), trace, clause);
     } else {
-      open.panel.view.reveal(undefined, true);
+      open.panel.view.reveal(column, true);
       open.panel.post({ type: "age", text: ageOf(trace.clauses) });
       if (clause !== undefined) {
         open.panel.post({ type: "clause", clause });

@@ -49,7 +49,7 @@ export class StudyView implements vscode.Disposable {
 
   private async restore(view: vscode.WebviewPanel, state: unknown): Promise<void> {
     const studied = isRecord(state) ? state["studied"] : undefined;
-    await this.server.settled();
+    await this.server.begin();
     if (isRecord(studied) && typeof studied["uri"] === "string" && typeof studied["run"] === "number") {
       const { uri, run: number } = studied;
       const answer = await this.server.request("robbdd/runs", { uri, run: number });

@@ -1,0 +1,49 @@
+// Run until it fails: execute scenarios again and again, with different seeds, up to the first failure.
+import * as vscode from "vscode";
+import { inform } from "../notices";
+import { isRecord } from "../values";
+import { numberProblem, typedNumber } from "./options";
+
+/** Executions of each scenario, unless the user gives another number. */
+const USUAL = 100;
+
+/** An execution in a stored run. */
+export interface Failed {
+  readonly run: number;
+  readonly index: number;
+}
+
+/** Ask how often to try; return the arguments of `robbdd.run`, or undefined if the user cancels. */
+export async function askUntilFailure(): Promise<Readonly<Record<string, unknown>> | undefined> {
+  const typed = await vscode.window.showInputBox({
+    title: "Run until It Fails",
+    prompt: `How often should each scenario be executed at most? Each execution has a seed of its own. Default: ${USUAL}.`,
+    value: String(USUAL),
+    validateInput: (text) => numberProblem(text),
+  });
+  return typed === undefined ? undefined : { repeat: typedNumber(typed) ?? USUAL, stop_on_failure: true };
+}
+
+/** The first execution of a run that did not hold, from the server's answer; undefined if all held. */
+export function failedIn(answer: unknown): Failed | undefined {
+  if (!isRecord(answer) || typeof answer["failed"] !== "number" || !isRecord(answer["stored"])) {
+    return undefined;
+  }
+  const { run } = answer["stored"];
+  return typeof run === "number" ? { run, index: answer["failed"] } : undefined;
+}
+
+/** Say how it ended, with the replay of the failure. */
+export function tellFailure(answer: unknown, replay: (failed: Failed) => void): void {
+  const failed = failedIn(answer);
+  if (failed !== undefined) {
+    const place = `Execution ${failed.index + 1} of run ${failed.run} did not hold`;
+    inform(`${place}, ${failed.index === 0 ? "the first one" : `after ${failed.index} that did`}.`, {
+      Replay: () => {
+        replay(failed);
+      },
+    });
+  } else if (isRecord(answer) && answer["cancelled"] === false && typeof answer["holds"] === "number") {
+    inform(`All ${answer["holds"]} executions held.`);
+  }
+}
