@@ -29,6 +29,13 @@ def test_a_set_counts_as_its_verdict_does() -> None:
     ]
 
 
+def test_where_a_condition_does_not_apply_the_curve_has_no_points() -> None:
+    conditional = '"ball" is located at "right" whenever "cube" is located at "left" after event "t:e"'
+    assert [one.times for one in curves(read_clause(conditional), a_trace(), REGIONS)] == [()]
+    applies = '"ball" is located at "right" whenever "cube" is located at "right" after event "t:e"'
+    assert least(applies) == [(pytest.approx(-0.9), False)]
+
+
 def test_each_fluent_of_a_group_has_its_own_curve() -> None:
     both = 'not ( "ball" is located at "left" after event "t:e" and "ball" is held by "arm" after event "t:e" )'
     assert least(both) == [(pytest.approx(0.08), True), (1.0, True)]

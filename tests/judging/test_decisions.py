@@ -9,7 +9,7 @@ import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.judging.decisions import alternatives, decide, is_closed
+from robbdd_tools.judging.decisions import alternatives, decide, is_closed, occurred
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.trace import Trace
@@ -233,3 +233,10 @@ def test_of_a_set_every_member_must_hold() -> None:
         [("ball", "left"), ("cube", "left")],
         [("ball", "right"), ("cube", "right")],
     ]
+
+
+def test_an_event_that_has_not_occurred_passes_nothing() -> None:
+    assert (occurred(a_trace(), "t:e", 0).outcome, occurred(a_trace(), "t:e", 0).at) == (Outcome.HOLDS, 0.2)
+    assert occurred(a_trace(), "t:later", 0) == unknown("event t:later never occurred", Cause.NO_EVENT)
+    unreached = replace(a_trace(), unreached="another branch was taken")
+    assert occurred(unreached, "t:e", 0) == unknown("another branch was taken", Cause.UNREACHED)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of
+from judging.test_policies import spec_of
+from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of, stated_frames
 from robbdd_tools.logs.log_contents import TextStamp
+from robbdd_tools.monitor.policy import Observation, Policy
+from world.worlds import CUBE
 
 FRAMES = ("map", "cup_1", "left/cup-2", "right/cup2", "Bin")
 
@@ -49,3 +54,15 @@ def test_a_text_reports_an_event_by_its_name_or_its_emitters(text: str) -> None:
 def test_a_longer_text_reports_nothing() -> None:
     texts = [TextStamp("/log", "waiting for pick-end", 1.0), TextStamp("/log", "", 2.0)]
     assert occurrences_of("ex:evt-pick-end", "pick-end", texts) == []
+
+
+def test_the_observations_of_policies_state_frames_of_variables_and_elements() -> None:
+    spec = spec_of()
+    assert spec.execution is not None
+    (policy,) = spec.execution.policies
+    seen: Observation = policy.observations[0]
+    mapped = replace(seen, mapped=(("cube_frame", "t:var-thing"), ("bin_frame", "env:bin")))
+    observing: Policy = replace(policy, observations=(seen, mapped))
+    spec = replace(spec, execution=replace(spec.execution, policies=(observing,)))
+    assert stated_frames(spec) == {CUBE: "cube_frame", "env:bin": "bin_frame"}
+    assert stated_frames(replace(spec, execution=None)) == {}

@@ -158,6 +158,7 @@ def test_observations_too_far_apart_in_time_are_no_evidence() -> None:
         policy = replace(spec.execution.policies[0], observations=(slow, fast))
         found = judged(replace(spec, execution=replace(spec.execution, policies=(policy,))), moving([0.2] * 6))
         assert found.outcome is outcome
+        assert (found.reason == "the observations are 0.5 s apart, more than 0.1 s") is (outcome is Outcome.UNKNOWN)
 
 
 @pytest.mark.parametrize(
@@ -170,6 +171,10 @@ def test_observations_too_far_apart_in_time_are_no_evidence() -> None:
         (
             spec_of(provider=Provider("x:p", "topic", source="/poses")),
             "env:cube1 is observed by a ROS topic '/poses', which a simulation does not have",
+        ),
+        (
+            spec_of(provider=Provider("x:p", "camera")),
+            "env:cube1 is observed by camera, which a simulation does not have",
         ),
         (spec_of(targets=("t:var-thing",)), "a distance is between two elements, but 1 are observed"),
         (spec_of(targets=("t:var-thing", "env:void")), "the trace has no record of 'env:void'"),
@@ -336,3 +341,20 @@ def test_answers_of_code_that_are_no_margins_are_refused_with_the_place_of_the_f
         assert (found.fault.place.line, found.fault.origin) == (4, "x:policy")
     assert by_code(tmp_path, "whole_numbers", "return [1, 2]").robustness == 1.0
     assert by_code(tmp_path, "unsigned", "return np.uint8(3)").robustness == 3.0
+
+
+def test_code_that_returns_no_numbers_is_named_with_its_place(tmp_path: Path) -> None:
+    found = by_code(tmp_path, "by_nan", "return np.full(len(evidence.times), np.nan)")
+    assert found.reason == "by_nan:judge must return finite numbers, but 2 are not"
+    assert found.fault is not None
+    assert found.fault.code == "by_nan:judge"
+
+
+def test_the_samples_of_a_log_are_the_observations() -> None:
+    elsewhere = Provider("x:p", "topic", rate=1.0, source="/poses")
+    logged = replace(moving([0.2, 0.3, 0.4]), log="drive.mcap")
+    found = judged(spec_of(provider=elsewhere), logged)
+    assert (found.outcome, found.robustness) == (Outcome.HOLDS, pytest.approx(0.1))
+    assert (
+        judged(spec_of(provider=elsewhere), replace(moving([0.2, 0.6]), log="drive.mcap")).outcome is Outcome.VIOLATED
+    )

@@ -56,12 +56,22 @@ def test_a_step_without_a_clause_is_read() -> None:
     assert stated_by_step("when", 'event "t:e" occurs', None) == EventOccurrence("t:e")
 
 
+def test_an_edited_sentence_is_read_in_the_wording_of_its_feature_and_a_stored_one_in_the_first() -> None:
+    within = '"t:a" is located at "t:l" within 2 seconds after event "t:e"'
+    throughout = replace(LEFT, time=After("t:e", 2.0), iri="l")
+    assert stated_by_step("then", within, KNOWN, 1) == throughout
+    assert stated_by_step("then", within, KNOWN, 2) == Text(within, iri="l")
+    assert statement_of(replace(KNOWN, statement=None, sentence=within, parts=("l",))) == throughout
+
+
 WHEN = ClauseSpec(2, "t:w", "w", "when", '"env:arm" picks "env:cube"')
 
 
 def test_when_clauses_keep_their_content() -> None:
     assert statement_of(replace(WHEN, sentence='event "t:e" occurs')) == EventOccurrence("t:e")
-    assert isinstance(statement_of(WHEN), BehaviourCall)
+    call = statement_of(WHEN)
+    assert isinstance(call, BehaviourCall)
+    assert call.arguments == {"agent": "env:arm", "object": "env:cube"}
     assert statement_of(replace(WHEN, sentence="somebody sings")) is None
 
 

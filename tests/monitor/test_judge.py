@@ -190,6 +190,35 @@ def test_every_question_about_a_gap_is_refused(question: str) -> None:
     assert (found.outcome, found.cause) == (Outcome.UNKNOWN, Cause.UNOBSERVED)
 
 
+def test_the_truth_of_a_topic_is_known_throughout_the_window_or_refused() -> None:
+    def said(evidence: Evidence, _: Arguments) -> FloatArray:
+        return evidence.truth("/seen")
+
+    trace = replace(trace_of({"ball": still(3)}, {"start": 0.0, "end": 0.2}), log="drive.mcap")
+    reported = replace(ABOVE, evaluate=said)
+
+    def judged_on(*values: float) -> Verdict:
+        return judge(reported, {"thing": "ball"}, ALL, replace(trace, truths={"/seen": np.array(values)}), {})
+
+    assert judged_on(1.0, 1.0, 1.0).outcome is Outcome.HOLDS
+    assert judged_on(1.0, -1.0, 1.0).outcome is Outcome.VIOLATED
+    unreported = unknown("the topic '/seen' reports nothing known at 0.10 s", Cause.UNOBSERVED)
+    assert judged_on(1.0, float("nan"), 1.0) == unreported
+
+
+def test_a_condition_that_never_applied_is_the_reason_for_what_holds() -> None:
+    trace = trace_of({"ball": heights([-0.3, -0.1]), "lid": heights([-1.0, -2.0])}, {"start": 0.0})
+    found = judge(ABOVE, {"thing": "ball"}, After("start", 0.1), trace, {}, (ABOVE, {"thing": "lid"}))
+    assert found.outcome is Outcome.HOLDS
+    assert found.reason == found.vacuous != ""
+
+
+def test_a_condition_that_is_never_known_leaves_a_violation_unknown() -> None:
+    trace = trace_of({"ball": heights([-0.3]), "lid": heights([float("nan")])}, {"start": 0.0})
+    found = judge(ABOVE, {"thing": "ball"}, After("start"), trace, {}, (ABOVE, {"thing": "lid"}))
+    assert found == unknown("its condition is not known at 0.00 s", Cause.NO_RECORD)
+
+
 def test_at_some_time_holds_at_a_margin_of_zero() -> None:
     assert at_some_time([-1.0, -0.3, 0.0, -0.1], 0.2).outcome is Outcome.HOLDS
 

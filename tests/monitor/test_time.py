@@ -18,6 +18,7 @@ from robbdd_tools.monitor.time import (
     NoWindow,
     TimeConstraint,
     Window,
+    closing_time,
     in_iterations,
     occurrences,
     window,
@@ -221,3 +222,11 @@ def test_nobody_knows_the_last_occurrence_while_there_may_be_another(finished: b
     assert found.open is not finished
     assert "before it was certain that event e is the last one" in found.reason
     assert window(After("e"), replace(trace, pending=("e",))) == Window(2, 2)
+
+
+def test_a_window_closes_in_its_own_iteration() -> None:
+    stamps = (EventStamp("e", 0.3, 1), EventStamp("e", 0.9, 2))
+    trace = replace(trace_of({"a": still(COUNT)}), events=stamps)
+    assert closing_time(Before("e", None, 1), trace) == 0.3
+    assert closing_time(After("e", 0.5, 2), trace) == 1.4
+    assert closing_time(After("e", 0.5, 3), trace) is None

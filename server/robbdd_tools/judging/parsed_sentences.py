@@ -117,8 +117,10 @@ def _conditions() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
 
 def _condition(text: str | None) -> Condition | None:
     """Return the condition that a part of a sentence states; ``None`` if no predicate of the catalog matches."""
-    for predicate, pattern in () if text is None else _conditions():
-        if (match := pattern.fullmatch(text or "")) is not None:
+    if text is None:
+        return None
+    for predicate, pattern in _conditions():
+        if (match := pattern.fullmatch(text)) is not None:
             return Condition(predicate, _fillers(match, predicate.slots))
     return None
 

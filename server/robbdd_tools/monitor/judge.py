@@ -87,8 +87,7 @@ class WindowEvidence:
 
         Only the trace of a log can lack values. A comparison with a missing value would be false without a word.
         """
-        missing = np.isnan(values).any(axis=1) if self.trace.log else np.zeros(len(values), bool)
-        if missing.any():
+        if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
             raise Unobserved(f"{name} was not observed {self._gap(name, float(times[int(np.argmax(missing))]))}")
         return values
 
