@@ -73,6 +73,7 @@ const predicates = phrases(
   "moves safely",
   "moves slower than",
   "is tilted less than",
+  "it takes less than",
   "does not collide",
 );
 

@@ -41,8 +41,14 @@ def judgements(path: Path) -> dict[str, tuple[str, float, str]]:
 def test_a_deadline_holds_or_is_missed_with_the_time_that_was_left(project: Path) -> None:
     assert main(["run", "deadlines.bdd", "--where", "part = cube0", "--json", "run.json"]) == 1
     found = judgements(project / "run.json")
-    assert {name for name, (verdict, _, _) in found.items() if verdict != "holds"} == {"express-delivered5"}
+    assert {name for name, (verdict, _, _) in found.items() if verdict != "holds"} == {
+        "express-delivered5",
+        "express-quick5",
+    }
     assert found["express-delivered12"][0] == "holds"
+    verdict, margin, reason = found["express-quick5"]
+    assert (verdict, margin < -1000) == ("violated", True)  # ms
+    assert reason.startswith("it took ")
     verdict, margin, reason = found["express-delivered5"]
     assert (verdict, margin < 0) == ("violated", True)
     assert reason.startswith("it held at no time until ")

@@ -82,8 +82,15 @@ def test_variables_are_qualified_outside_their_template() -> None:
 def test_predicates_are_offered_as_whole_phrases() -> None:
     phrases = labels(edited("<part> is located at <goal>, before", "<part> $0, before"))
     catalog = load_catalog().predicates.values()
-    assert phrases == sorted(re.sub(r"<\w+>|[$#].*", "", one.phrase).strip() for one in catalog)
+    begun = [one for one in catalog if one.phrase.startswith("<")]
+    assert phrases == sorted(re.sub(r"<\w+>|[$#].*", "", one.phrase).strip() for one in begun)
     assert "is located at" in phrases
+
+
+def test_a_duration_is_offered_where_a_clause_begins_but_not_as_a_condition() -> None:
+    clause = "<part> is located at <goal>, before"
+    assert "it takes less than" in labels(edited(clause, "$0, before"))
+    assert "it takes less than" not in labels(edited(clause, "<part> is located at <goal> whenever $0, before"))
 
 
 def test_conditions_and_windows_are_offered_after_a_predicate() -> None:

@@ -71,6 +71,7 @@ Scenario Template (ns=t) sort {
         stays: holds(<parts> are sorted into <bins>, <wait> seconds after <end>)
         in-time: holds(<parts> are sorted into <bins>, within <wait> seconds before <end>)
         "calm" <wait> seconds after <end>
+        fast: holds(it takes less than 12 s, from <start> until <end>)
 }
 User Story (ns=other_names) zz-first {
     As A "operator" I Want "parts" So That "work goes on"

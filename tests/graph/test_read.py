@@ -134,7 +134,7 @@ def test_quantifiers_nest() -> None:
 
 
 def test_a_horizon_is_a_variable() -> None:
-    _, _, stays, in_time, text = variant("product").template.clauses
+    _, _, stays, in_time, text, _ = variant("product").template.clauses
     assert isinstance(stays, Fluent)
     assert isinstance(in_time, Fluent)
     assert isinstance(text, TextClause)

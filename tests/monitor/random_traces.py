@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from monitor.traces import STEP, heights, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
@@ -43,6 +44,14 @@ class Holds:
 
 
 @dataclass(frozen=True)
+class Takes:
+    """The time between two events is shorter than a limit (s)."""
+
+    limit: float
+    time: TimeConstraint
+
+
+@dataclass(frozen=True)
 class Joined:
     """``and``, ``or`` or ``not`` of clauses."""
 
@@ -50,7 +59,7 @@ class Joined:
     parts: tuple[Clause, ...]
 
 
-Clause = Holds | Joined
+Clause = Holds | Takes | Joined
 
 
 @dataclass(frozen=True)
@@ -64,6 +73,7 @@ class Story:
     """Events of a behaviour tree to how often what emits them was begun."""
     pending: tuple[str, ...] = ()
     """Events whose last occurrence is unknown."""
+    log: str = ""
 
     @property
     def trace(self) -> Trace:
@@ -71,7 +81,7 @@ class Story:
         found = trace_of({name: heights(path) for name, path in self.paths.items()})
         stamps = tuple(EventStamp(*event) for event in self.events)
         trace = Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
-        return replace(trace, executions=self.executions, pending=self.pending)
+        return replace(trace, executions=self.executions, pending=self.pending, log=self.log)
 
 
 def by_the_monitor(clause: Clause, story: Story) -> Verdict:
@@ -80,6 +90,8 @@ def by_the_monitor(clause: Clause, story: Story) -> Verdict:
         case Holds(thing, time, condition):
             guard = None if condition is None else (ABOVE, {"thing": condition})
             return judge(ABOVE, {"thing": thing}, time, story.trace, {}, guard)
+        case Takes(limit, time):
+            return judge(load_catalog().predicates["takes-less-than"], {"limit": f"{limit!r} s"}, time, story.trace, {})
         case Joined("not", (part,)):
             return negation(by_the_monitor(part, story))
         case Joined(operator, parts):
@@ -126,7 +138,10 @@ def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
 
 OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), _times(ITERATIONS))
 """Clauses that name an iteration each, of things that are recorded."""
-FLUENTS: st.SearchStrategy[Clause] = st.builds(
+DURATIONS: st.SearchStrategy[Clause] = st.builds(
+    Takes, st.integers(0, 10).map(lambda steps: steps * STEP), _times((0, LAST, *ITERATIONS))
+)
+FLUENTS: st.SearchStrategy[Clause] = DURATIONS | st.builds(
     Holds,
     st.sampled_from(["x", "y", "missing"]),
     _times((0, LAST, *ITERATIONS)),

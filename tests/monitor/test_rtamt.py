@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from importlib import import_module
+from math import floor
 from typing import Any
 
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from monitor.random_traces import OBSERVED, Clause, Holds, Joined, Story, by_the_monitor, stories
+from monitor.random_traces import EVENTS, OBSERVED, Clause, Holds, Joined, Story, Takes, by_the_monitor, stories
 from monitor.traces import STEP
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.monitor.verdict import Outcome
@@ -30,6 +31,11 @@ def formula(clause: Clause) -> str:
             return f"eventually({when(time)} and ({thing} >= 0))"
         case Holds(thing, time):
             return f"always({when(time)} implies ({thing} >= 0))"
+        case Takes(limit, During(start, end, (first, last))):
+            within = f"eventually[0,{floor(limit / STEP)}] ({end}{last} >= 0)"
+            return f"always(({start}{first} >= 0) implies ({within}))"
+        case Takes():
+            raise ValueError("a duration is between two events")
         case Joined("not", (part,)):
             return f"(not {formula(part)})"
         case Joined(operator, parts):
@@ -74,7 +80,7 @@ def known(clause: Clause, story: Story) -> bool:
     """Whether the semantics coincide: no fluent of a clause is unknown."""
     if isinstance(clause, Holds):
         return by_the_monitor(clause, story).robustness is not None
-    return all(known(part, story) for part in clause.parts)
+    return isinstance(clause, Joined) and all(known(part, story) for part in clause.parts)
 
 
 @settings(max_examples=150)
@@ -119,3 +125,14 @@ def test_a_condition_has_the_truth_value_of_signal_temporal_logic(clause: Clause
     # At a margin of 0, that monitor tells neither true from false.
     assume(found.outcome is not Outcome.UNKNOWN and margin != 0)
     assert (found.outcome is Outcome.HOLDS) == (margin > 0)
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10), st.sampled_from(EVENTS), st.sampled_from(EVENTS), stories(events_on_samples=True))
+def test_a_duration_is_an_event_that_must_follow_in_time(steps_left: int, a: str, b: str, story: Story) -> None:
+    """The truth value is the same; there, the margin is not a time."""
+    assume(len(story.paths["x"]) > 1)
+    clause = Takes(steps_left * STEP + STEP / 2, During(a, b, (1, 1)))
+    found = by_the_monitor(clause, story)
+    assume(found.outcome is not Outcome.UNKNOWN)
+    assert (found.outcome is Outcome.HOLDS) == (by_rtamt(clause, story) > 0)

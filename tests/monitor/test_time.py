@@ -189,7 +189,7 @@ def test_an_end_that_is_missing_is_that_of_its_iteration() -> None:
         (During("a", "b", (3, 1)), "event a never occurred in iteration 3"),
         (Before("a", None, 4), "event a never occurred in iteration 4"),
     ):
-        assert window(constraint, trace) == NoWindow(reason, open=False)
+        assert window(constraint, trace) == NoWindow(reason, open=False, missing=reason.split()[1])
 
 
 def test_times_that_differ_by_rounding_only_are_the_same() -> None:

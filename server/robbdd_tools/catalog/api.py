@@ -165,6 +165,10 @@ UnitChoice = Callable[[Evidence, Arguments], str]
 """Unit of a predicate's margin, if it depends on configuration or on the unit of a quantity in the clause."""
 
 
+DurationMargin = Callable[[float, Arguments], float]
+"""Signed margin of a predicate about a duration (s), in the predicate's unit."""
+
+
 @dataclass(frozen=True, slots=True)
 class Predicate:
     """A predicate of fluents.
@@ -178,6 +182,8 @@ class Predicate:
       *unknown* and never pass.
     - ``quantities``: what the evaluator needs besides poses and grips (``reach``). Quantities are expensive, so they
       are sampled only in the windows of clauses that need them.
+    - ``duration``: set if the predicate is about the time between the two events of ``from … until …`` instead of the
+      states at samples. Then ``evaluate`` is for plots only.
     - ``set_up``: true if the predicate is set up before the scenario starts instead of observed.
     """
 
@@ -193,6 +199,7 @@ class Predicate:
     aliases: tuple[str, ...] = ()
     unit_for: UnitChoice | None = None
     set_up: bool = False
+    duration: DurationMargin | None = None
 
 
 @dataclass(frozen=True, slots=True)

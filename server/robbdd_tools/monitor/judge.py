@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from robbdd_tools.monitor.durations import NOT_AN_INTERVAL, judge_duration
 from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, closing_time, window
 from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.vacuity import Range
@@ -196,6 +197,13 @@ def judge(
     for judged in (predicate, *(() if condition is None else condition[:1])):
         if judged.evaluate is None:
             return unknown(f"there is no evaluator for '{judged.name}'", Cause.NO_STEP)
+    if predicate.duration is not None:
+        if condition is not None:
+            return unknown(NOT_AN_INTERVAL, Cause.NO_STEP)
+        unit = _unit(predicate, WindowEvidence(trace, Window(0, 0), regions), arguments)
+        return judge_duration(predicate.duration, arguments, constraint, trace, unit)
+    if condition is not None and condition[0].duration is not None:
+        return unknown(NOT_AN_INTERVAL, Cause.NO_STEP)
     if condition is not None and constraint.some_time:
         return unknown(NOT_THROUGHOUT, Cause.NO_STEP)
     selected = window(constraint, trace)
@@ -210,7 +218,7 @@ def judge(
     try:
         margins = margins_of(predicate, evidence, arguments)
         applies = None if condition is None else margins_of(condition[0], evidence, condition[1])
-        unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
+        unit = _unit(predicate, evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
     except Unobserved as gap:
@@ -220,6 +228,10 @@ def judge(
     if constraint.some_time:
         return _some_time_verdict(margins, evidence.times, unit, closing_time(constraint, trace), missing)
     return _verdict(margins, evidence.times, unit)
+
+
+def _unit(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> str:
+    return predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
 
 
 def margins_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> FloatArray:

@@ -72,12 +72,14 @@ class NoWindow:
 
     ``open`` is true if a longer trace may still have the window. ``empty`` is true if the window is closed but contains
     no sample. ``recorded`` are the samples of the window that the trace has, if the window reaches beyond the trace.
+    ``missing`` is the event that has not occurred, if that is the reason.
     """
 
     reason: str
     open: bool
     empty: bool = False
     recorded: Window | None = None
+    missing: str = ""
 
 
 def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
@@ -89,19 +91,33 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
     - ``after`` selects the first sample in ``[t_e, ∞)`` or, with a horizon, all samples in ``[t_e, t_e + h]``.
     - ``from a until b`` selects all samples in ``[t_a, t_b]``.
     """
-    for event, iteration in occurrences(constraint):
-        if iteration == LAST and event in trace.pending:
-            reason = (
-                f"the execution ended at {trace.end:.2f} s, before it was certain that event {event} is the last one"
-            )
-            return NoWindow(reason, not trace.finished)
     match constraint:
         case Before(event, horizon, iteration):
-            return _before(trace, event, horizon, iteration)
+            return _pending(constraint, trace) or _before(trace, event, horizon, iteration)
         case After(event, horizon, iteration):
-            return _after(trace, event, horizon, iteration)
-        case During(start, end, iterations):
-            return _during(trace, start, end, iterations)
+            return _pending(constraint, trace) or _after(trace, event, horizon, iteration)
+        case During():
+            found = interval(constraint, trace)
+            if isinstance(found, NoWindow):
+                return found
+            begin, finish = found
+            return _closed(trace.first_at_or_after(begin - TOLERANCE), trace.last_at_or_before(finish + TOLERANCE))
+
+
+def interval(constraint: During, trace: Trace) -> tuple[float, float] | NoWindow:
+    """Return the times (s) of the two events of an interval."""
+    pending = _pending(constraint, trace)
+    if pending is not None:
+        return pending
+    (start, first), (end, last) = occurrences(constraint)
+    begin, finish = trace.event_time(start, first), trace.event_time(end, last)
+    if begin is None:
+        return _missing(trace, start, first)
+    if finish is None:
+        return _missing(trace, end, last)
+    if finish < begin:
+        return NoWindow(f"event {end} occurred before event {start}", False)
+    return begin, finish
 
 
 def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
@@ -137,6 +153,17 @@ def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, 
     return replace(constraint, iteration=last if role == "then" else first)
 
 
+def _pending(constraint: TimeConstraint, trace: Trace) -> NoWindow | None:
+    """Return the reason why a trace has no window yet: its last event may occur again."""
+    for event, iteration in occurrences(constraint):
+        if iteration == LAST and event in trace.pending:
+            reason = (
+                f"the execution ended at {trace.end:.2f} s, before it was certain that event {event} is the last one"
+            )
+            return NoWindow(reason, not trace.finished)
+    return None
+
+
 def _before(trace: Trace, event: str, horizon: float | None, iteration: int) -> Window | NoWindow:
     time = trace.event_time(event, iteration)
     if time is None:
@@ -164,18 +191,6 @@ def _after(trace: Trace, event: str, horizon: float | None, iteration: int) -> W
     return _closed(first, trace.last_at_or_before(end + TOLERANCE))
 
 
-def _during(trace: Trace, start: str, end: str, iterations: tuple[int, int]) -> Window | NoWindow:
-    first, last = iterations
-    begin, finish = trace.event_time(start, first), trace.event_time(end, last)
-    if begin is None:
-        return _missing(trace, start, first)
-    if finish is None:
-        return _missing(trace, end, last)
-    if finish < begin:
-        return NoWindow(f"event {end} occurred before event {start}", False)
-    return _closed(trace.first_at_or_after(begin - TOLERANCE), trace.last_at_or_before(finish + TOLERANCE))
-
-
 def _closed(first: int, last: int) -> Window | NoWindow:
     return _between(first, last) or NoWindow("no sample was taken in the window", False, True)
 
@@ -185,7 +200,7 @@ def _between(first: int, last: int) -> Window | None:
 
 
 def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:
-    return NoWindow(never_occurred(trace, event, iteration), not trace.finished)
+    return NoWindow(never_occurred(trace, event, iteration), not trace.finished, missing=event)
 
 
 def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:

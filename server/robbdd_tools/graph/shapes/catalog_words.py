@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Behaviour, Kind, Predicate, Slot
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import SHAPES, expand
+from robbdd_tools.graph.rdf.vocabulary import SHAPES, SOME_TIME, expand
 from robbdd_tools.graph.shapes.derived import use_of
 
 if TYPE_CHECKING:
@@ -36,6 +37,37 @@ def add_word_shapes(shapes: Graph) -> None:
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
         for slot in word.slots:
             _add_slot_shape(shapes, word, slot)
+        if isinstance(word, Predicate) and word.duration is not None:
+            _add_interval_shapes(shapes, word)
+
+
+def _add_interval_shapes(shapes: Graph, word: Predicate) -> None:
+    """Add the shapes of a predicate about a duration: a start, an end, and neither *at some time* nor *whenever*."""
+    from rdflib import BNode, Literal, URIRef
+    from rdflib.namespace import RDF, SH
+
+    node = URIRef(f"{SHAPES}{word.name}")
+    message = Literal(
+        f"'{re.sub('#[a-z]+', '…', word.phrase)}' is about the time between two events: write 'from <start> until "
+        "<end>', without 'at some time' and 'whenever'"
+    )
+    some_time = BNode()
+    shapes.add((some_time, SH.hasValue, URIRef(expand(SOME_TIME))))
+    for name, path, count, limit in (
+        ("start", "time:after-event", SH.minCount, 1),
+        ("end", "time:before-event", SH.minCount, 1),
+        ("whenever", "rbw:whenever", SH.maxCount, 0),
+        ("throughout", "rdf:type", SH.qualifiedMaxCount, 0),
+    ):
+        shape = URIRef(f"{SHAPES}{word.name}-{name}")
+        shapes.add((node, SH.property, shape))
+        shapes.add((shape, RDF.type, SH.PropertyShape))
+        shapes.add((shape, SH.path, URIRef(expand(path))))
+        shapes.add((shape, count, Literal(limit)))
+        if count == SH.qualifiedMaxCount:
+            shapes.add((shape, SH.qualifiedValueShape, some_time))
+        shapes.add((shape, SH.severity, SH.Violation))
+        shapes.add((shape, SH.message, message))
 
 
 def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> None:
