@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
+import { type Launch, launchSettings } from "./launch";
 import { complain, inform, warn } from "./notices";
 import { type ServerState, afterInstallation, notInstalled } from "./presentation";
 import { isRunNotification } from "./runs/messages";
@@ -21,6 +22,7 @@ const STOP_TIMEOUT = 3000;
 export class Server implements vscode.Disposable {
   private client: LanguageClient | undefined;
   private lookup: Lookup | undefined;
+  private launch: Launch = { args: [], env: {} };
   private state: ServerState = { kind: "stopped" };
   private begun = false;
   /** Number of runs started by commands; part of their names. */
@@ -51,6 +53,7 @@ export class Server implements vscode.Disposable {
       await this.shutDown();
       const lookup = await this.find();
       this.lookup = lookup;
+      this.launch = launchSettings();
       if (lookup.found) {
         await this.start(lookup.command, lookup.origin);
         this.setup.offerUpdate(lookup.command, () => void this.install());
@@ -60,13 +63,13 @@ export class Server implements vscode.Disposable {
     });
   }
 
-  /** Restart only if the lookup would have another result than last time. */
+  /** Restart only if the lookup or the settings of the start would have another result than last time. */
   async restartIfMoved(): Promise<void> {
     if (!this.begun) {
       return;
     }
     const lookup = await this.find();
-    if (JSON.stringify(lookup) !== JSON.stringify(this.lookup)) {
+    if (JSON.stringify([lookup, launchSettings()]) !== JSON.stringify([this.lookup, this.launch])) {
       await this.restart();
     }
   }
@@ -247,12 +250,13 @@ export class Server implements vscode.Disposable {
 
   private async createClient(command: string): Promise<LanguageClient> {
     const { createClient } = await import("./connection");
-    const client = createClient(command, this.setup.workingFolder(), LANGUAGES, this.log, {
+    const client = createClient(command, this.launch, this.setup.workingFolder(), LANGUAGES, this.log, {
       starting: () => {
         this.publish({ kind: "starting" });
       },
-      running: () => {
-        this.publish({ kind: "ready", command });
+      running: (version) => {
+        this.publish({ kind: "ready", command, version });
+        this.setup.checkFit(command, version);
       },
       ended: () => {
         this.runs.abandon();

@@ -36,6 +36,7 @@ export function registerCommands(
   chooser: RunOptionsChooser,
   { previews, graphs, replays, studies, histories, comparisons, tests }: Views,
   log: vscode.LogOutputChannel,
+  reportIssue: () => unknown,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri }), RUNNABLE),
@@ -64,6 +65,7 @@ export function registerCommands(
     "robbdd.showLog": () => {
       log.show();
     },
+    "robbdd.reportIssue": () => reportIssue(),
     "robbdd.showRuns": () => {
       runs.show();
     },

@@ -3,13 +3,15 @@ import { createInterface } from "node:readline";
 import type { Readable } from "node:stream";
 import * as vscode from "vscode";
 import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "vscode-languageclient/node";
+import type { Launch } from "./launch";
 import { RestartBudget } from "./restarts";
 import { VerdictPainter } from "./verdicts/painter";
 
 /** Receives the events of a connection and the requests of the server's commands. */
 export interface Owner {
   starting(): void;
-  running(): void;
+  /** The server answers; `version` is its version if it states one. */
+  running(version: string | undefined): void;
   /** The server ended by itself, whether or not it will be restarted. */
   ended(): void;
   /** The server ended by itself and will not be restarted. */
@@ -31,6 +33,7 @@ class DiscreetClient extends LanguageClient {
 /** Create an unstarted client of the server that a command starts in the folder `cwd`, for files of these languages. */
 export function createClient(
   command: string,
+  { args, env }: Launch,
   cwd: string,
   languages: readonly string[],
   log: vscode.LogOutputChannel,
@@ -43,7 +46,7 @@ export function createClient(
   const client = new DiscreetClient(
     "robbdd",
     "RobBDD",
-    { command, transport: TransportKind.stdio, options: { cwd } },
+    { command, args: [...args], transport: TransportKind.stdio, options: { cwd, env } },
     {
       documentSelector: languages.map((language) => ({ scheme: "file", language })),
       outputChannel: log,
@@ -90,7 +93,7 @@ export function createClient(
       owner.starting();
     } else if (newState === State.Running) {
       answered = true;
-      owner.running();
+      owner.running(client.initializeResult?.serverInfo?.version);
     }
   });
   return client;

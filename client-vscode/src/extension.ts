@@ -14,7 +14,9 @@ import { RunOptionsChooser } from "./runs/chooser";
 import { RunMonitor } from "./runs/monitor";
 import { Setup } from "./setup/setup";
 import { StatusItem } from "./status";
+import { offerCommandLine } from "./terminal";
 import { TestingView } from "./testing/view";
+import { type Versions, reportText } from "./versions";
 
 let server: Server | undefined;
 
@@ -26,8 +28,11 @@ export function activate(context: vscode.ExtensionContext): void {
   });
   const { version } = context.extension.packageJSON as { readonly version: string };
   const setup = new Setup(context.globalStorageUri.fsPath, version, context.asAbsolutePath("out/server"), log);
+  let running: Versions["server"];
   const started = new Server(log, runs, setup, (state) => {
     status.showServer(state);
+    running = state.kind === "ready" ? state : undefined;
+    offerCommandLine(context.environmentVariableCollection, running?.command);
     if (state.kind === "ready") {
       previews.refreshSoon();
       graphs.refreshSoon();
@@ -55,7 +60,9 @@ export function activate(context: vscode.ExtensionContext): void {
     comparisons,
     tests,
     noticeModels(),
-    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests }, log),
+    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests }, log, () =>
+      reportIssue({ extension: version, server: running }),
+    ),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restartIfMoved();
@@ -90,6 +97,13 @@ export function activate(context: vscode.ExtensionContext): void {
       context.subscriptions.push(listener);
     }
   });
+}
+
+/** Open a new text with the versions of all parts, to be completed and sent. */
+async function reportIssue(parts: Pick<Versions, "extension" | "server">): Promise<void> {
+  const editor = `${vscode.env.appName} ${vscode.version}`;
+  const content = reportText({ ...parts, editor, system: `${process.platform} ${process.arch}` });
+  await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "markdown", content }));
 }
 
 /** Whether the server has found an error in a file. */

@@ -2,7 +2,7 @@
 
 export type ServerState =
   | { readonly kind: "starting" }
-  | { readonly kind: "ready"; readonly command: string }
+  | { readonly kind: "ready"; readonly command: string; readonly version?: string | undefined }
   | { readonly kind: "stopped" }
   | { readonly kind: "failed"; readonly problem: string }
   /** The server was not found, but can be installed. */

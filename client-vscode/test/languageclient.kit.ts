@@ -9,7 +9,8 @@ export const TransportKind = { stdio: 0 };
 
 interface ServerOptions {
   readonly command: string;
-  readonly options: { readonly cwd: string };
+  readonly args: readonly string[];
+  readonly options: { readonly cwd: string; readonly env: Readonly<Record<string, string>> };
 }
 
 interface ClientOptions {
@@ -28,6 +29,9 @@ export class LanguageClient {
   readonly executed: string[] = [];
   /** What hears of the server's notifications, by the method. */
   readonly listeners = new Map<string, (notification: unknown) => void>();
+  /** Version that servers state; undefined for none. */
+  static version: string | undefined;
+  readonly initializeResult = { serverInfo: { version: LanguageClient.version } };
   private state = State.Stopped;
   private hear: (change: { newState: number }) => void = () => undefined;
 
@@ -43,6 +47,7 @@ export class LanguageClient {
   static reset(): void {
     this.made.length = 0;
     this.answers.clear();
+    this.version = undefined;
     const world = new World();
     this.answers.set("robbdd/tests", (question: Question) => world.ask(question));
   }

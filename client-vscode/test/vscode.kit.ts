@@ -110,7 +110,7 @@ export class CancellationTokenSource {
 }
 
 class Editor {
-  settings: Readonly<Record<string, string>> = {};
+  settings: Readonly<Record<string, unknown>> = {};
   readonly commands = new Map<string, Handler>();
   /** What starts runs in the Testing view, by its name. */
   readonly profiles = new Map<string, Handler>();
@@ -135,6 +135,8 @@ class Editor {
   readonly lists: (readonly { readonly label: string; readonly description?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
   openRuns = 0;
+  /** The texts of new documents. */
+  readonly texts: string[] = [];
   readonly files = new Map<string, string>();
   /** What fills the Testing view. */
   controller: { resolveHandler: (item: undefined) => Promise<void> } = { resolveHandler: nothing };
@@ -162,6 +164,7 @@ class Editor {
     this.typed.length = 0;
     this.lists.length = 0;
     this.openRuns = 0;
+    this.texts.length = 0;
   }
 
   /** Trust the workspace, as the user would. */
@@ -194,7 +197,10 @@ export const workspace = {
   getConfiguration: () => ({ get: (name: string, otherwise?: unknown) => editor.settings[name] ?? otherwise }),
   createFileSystemWatcher: () => ({ ...ended, onDidCreate: quiet(), onDidChange: quiet(), onDidDelete: quiet() }),
   registerTextDocumentContentProvider: () => ended,
-  openTextDocument: () => Promise.resolve({ languageId: "feature" }),
+  openTextDocument: (shown?: { readonly content?: string }) => {
+    editor.texts.push(shown?.content ?? "");
+    return Promise.resolve({ languageId: "feature" });
+  },
   findFiles: () => Promise.resolve([]),
   onDidChangeConfiguration: quiet(),
   onDidChangeTextDocument: quiet(),
@@ -262,7 +268,8 @@ export const commands = {
 };
 
 export const languages = { getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
-export const env = { remoteName: undefined };
+export const version = "1.91.0";
+export const env = { remoteName: undefined, appName: "Editor" };
 export const extensions = { getExtension: () => undefined };
 
 export const tests = {

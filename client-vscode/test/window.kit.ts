@@ -12,11 +12,14 @@ import { Uri, editor } from "./vscode.kit";
 
 export const MODEL = Uri.parse(FILE);
 let storage = "";
+/** What new terminals append to the variables of their environment. */
+export const terminal = new Map<string, string>();
 /** What the extension remembers of the workspace, as long as the test. */
 const memory = new Map<string, unknown>();
 
 afterEach(async () => {
   memory.clear();
+  terminal.clear();
   await deactivate();
   rmSync(storage, { recursive: true, force: true });
 });
@@ -37,6 +40,10 @@ export function openWindow({ trusted = true }: { readonly trusted?: boolean } = 
     extensionUri: Uri.file("/extension"),
     asAbsolutePath: (path: string) => join("/extension", path),
     subscriptions: [],
+    environmentVariableCollection: {
+      append: (name: string, value: string) => void terminal.set(name, value),
+      delete: (name: string) => void terminal.delete(name),
+    },
   };
   activate(context as unknown as ExtensionContext);
   return join(storage, "storage");

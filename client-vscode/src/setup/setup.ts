@@ -1,9 +1,11 @@
 // Install the language server for the user: progress, cancellation, errors, and updates.
 import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
-import { inform } from "../notices";
+import { inform, warn } from "../notices";
 import type { Installed } from "../presentation";
+import { openServerSetting } from "../settings";
 import { surroundings } from "../surroundings";
+import { fits } from "../versions";
 import { type PrivateServer, bundledWheel, discardAbandoned, installedServer, workingFolder } from "./environments";
 import { InstallProblem, installServer } from "./installer";
 import { type Wanted, wantedPackage } from "./steps";
@@ -12,6 +14,8 @@ export class Setup {
   private installing: Promise<Installed> | undefined;
   /** The server for which an update was offered: once in a window is enough. */
   private offered: string | undefined;
+  /** Version of the last server that did not fit. */
+  private unfit: string | undefined;
 
   /**
    * @param storage the folder of the private environments
@@ -58,6 +62,20 @@ export class Setup {
     this.offered = wanted;
     const message = `RobBDD: this version of the extension needs ${wanted}; ${server.package} is installed.`;
     inform(message, { Update: update });
+  }
+
+  /** Warn, once for each pair of versions, if a server does not fit this extension. */
+  checkFit(command: string, version: string | undefined): void {
+    if (version === undefined || fits(version, this.version) || this.unfit === version) {
+      return;
+    }
+    this.unfit = version;
+    const found = `The language server ${command} has version ${version}, this extension ${this.version}`;
+    warn(`${found}: parts of it may not work. Install the same version of both.`, {
+      "Open Setting": () => {
+        openServerSetting();
+      },
+    });
   }
 
   private wanted(): Wanted {

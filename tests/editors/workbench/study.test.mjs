@@ -44,7 +44,8 @@ step("the history of a clause lists its runs, and two of them are compared", asy
   await workbench.openFile(FILE);
   const lines = (await session.text(FILE)).split("\n");
   await workbench.goTo(lines.findIndex((line) => line.includes("at-goal: holds(")) + 1, 20);
-  await workbench.command("RobBDD: Show History of Clause");
+  await workbench.page.keyboard.press("Control+K");
+  await workbench.page.keyboard.press("Alt+H");
   const history = workbench.webview("History of at-goal");
   await history.getByRole("heading", { name: "at-goal: holds in 0 of 2 runs" }).waitFor();
   await eventually(async () => assert.deepEqual(await history.locator("td.verdict").allTextContents(), ["✗ 0/1", "✗ 3/4"]));
