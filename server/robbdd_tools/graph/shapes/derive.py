@@ -29,6 +29,7 @@ def derive(graph: Graph, records: Records | None = None) -> Derived:
     """
     from rdflib import Graph
 
+    # pyshacl needs a store that knows contexts, such as the default one.
     copy = Graph(bind_namespaces="none")
     for triple in chain(load_vocabulary(), graph):
         copy.add(triple)

@@ -17,7 +17,7 @@ from robbdd_tools.graph.write.foreign_namespaces import foreign_namespaces
 from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
 from robbdd_tools.graph.write.older_clauses import complete_clauses
 from robbdd_tools.graph.write.published_executions import complete_executions
-from robbdd_tools.graph.write.source_map import Location, SourceMap, SourceMapBuilder
+from robbdd_tools.graph.write.source_map import Location, SourceMap
 
 if TYPE_CHECKING:
     from rdflib import Graph
@@ -59,11 +59,14 @@ def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
 
     short = Graph(bind_namespaces="none")
     prefixes = bind_prefixes(short, user_prefixes(graph))
-    ordered = sorted(prefixes.items(), key=lambda pair: -len(pair[1]))
+    ordered = sorted(((namespace, prefix) for prefix, namespace in prefixes.items()), key=lambda pair: -len(pair[0]))
     names: dict[str, str] = {}
     for node in {str(node) for triple in graph for node in triple if isinstance(node, URIRef)}:
-        fitting = next(((p, ns) for p, ns in ordered if node.startswith(ns) and len(node) > len(ns)), None)
-        names[node] = node if fitting is None else f"{fitting[0]}:{node[len(fitting[1]) :]}"
+        names[node] = node
+        for namespace, prefix in ordered:
+            if node.startswith(namespace) and len(node) > len(namespace):
+                names[node] = f"{prefix}:{node[len(namespace) :]}"
+                break
     for owner, node in _blank_owners(graph) if owners is None else owners:
         if isinstance(node, BNode) and str(owner) in names:
             names.setdefault(str(node), f"a node of {names[str(owner)]}")
@@ -104,13 +107,10 @@ def graph_places(documents: Iterable[Document], graph: Graph, owners: Owners | N
         find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
         found = find(document.text, namespaces, document.uri)
         places |= {node: Location(document.uri, span) for node, span in found.items()}
-    builder = SourceMapBuilder()
-    for node, place in places.items():
-        builder.mark([(node,)], place)
     for owner, node in _blank_owners(graph) if owners is None else owners:
         if str(owner) in places:
-            builder.mark([(str(node),)], places[str(owner)])
-    return builder.build()
+            places[str(node)] = places[str(owner)]
+    return SourceMap({(node,): (place,) for node, place in places.items()})
 
 
 def _left_out(uri: str, records: Records, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:

@@ -32,7 +32,8 @@ def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> d
         if match["iri"] is not None:
             node = urljoin(base, match["iri"])
         elif match["prefix"] is not None and match["prefix"] in namespaces:
-            node = namespaces[match["prefix"]] + re.sub(r"\\(.)", r"\1", match["local"])
+            local = match["local"]
+            node = namespaces[match["prefix"]] + (re.sub(r"\\(.)", r"\1", local) if "\\" in local else local)
         if node is not None:
             known = subjects if before == "." else others
             known.setdefault(node, Span(*match.span()))
