@@ -11,7 +11,7 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import FileState, file_state, read_text
 from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.features.workspace_files import MAX_FILES
-from robbdd_tools.names.imports import import_uri, reached
+from robbdd_tools.names.imports import components, import_uri, reached
 
 # May match too much (in comments), never too little: candidates are parsed later.
 _IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
@@ -36,6 +36,11 @@ class ImportGraph:
             for imported in imports_on_disk(uri):
                 users.setdefault(spellings.of(imported), set()).add(uri)
         return cls({uri: frozenset(found) for uri, found in users.items()}, spellings)
+
+    def cycles(self) -> Mapping[str, int]:
+        """Return a number for each file that is imported, equal for files that import each other, directly or not."""
+        edges = {uri: tuple(users) for uri, users in self.users.items()}
+        return components(edges)
 
     def importers(self, uri: str) -> frozenset[str]:
         """Return the files that import a file, directly or indirectly."""

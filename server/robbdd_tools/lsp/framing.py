@@ -62,6 +62,7 @@ class Answer:
     """The findings about a file and its imports, or the internal error that prevented them.
 
     For a surveyed file, ``reached`` are the files that it imports, found or missing, and the files that import it.
+    ``together`` are the file and those that import it and are imported by it: the findings are about all of them.
     ``documents`` are the texts to which the findings refer.
     """
 
@@ -69,6 +70,7 @@ class Answer:
     uri: str
     diagnostics: tuple[Diagnostic, ...]
     error: str = ""
+    together: tuple[str, ...] = ()
     reached: frozenset[str] = frozenset()
     documents: dict[str, Document] = field(default_factory=dict[str, Document])
 

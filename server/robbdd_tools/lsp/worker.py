@@ -110,20 +110,22 @@ class Worker:
         return Answer(request.revision, request.uri, tuple(found))
 
     def _survey(self, request: Request) -> Answer:
-        """Return all findings about an unopened file."""
+        """Return all findings about an unopened file and the files that form a cycle of imports with it."""
         for uri in (request.uri, *request.importers):
             self.project.load(uri)
         snapshot = self.project.snapshot()
+        together = snapshot.reachability.cycle(request.uri)
         try:
-            found = fast_diagnostics(snapshot, request.uri)
-            found += shape_diagnostics(snapshot, request.uri, request.shapes)
-            found += self.scenes.findings(snapshot, request.uri)
+            found = [entry for uri in together for entry in fast_diagnostics(snapshot, uri)]
+            found += shape_diagnostics(snapshot, request.uri, request.shapes, together=together)
+            found += [entry for uri in together for entry in self.scenes.findings(snapshot, uri)]
         except Exception as error:  # As above.
-            return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
+            return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}", together)
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}
         documents = {uri: _document(snapshot, uri) for uri in named}
         reached = frozenset((*snapshot.reachability.walk(request.uri), *snapshot.importers(request.uri)))
-        return Answer(request.revision, request.uri, tuple(dict.fromkeys(found)), "", reached, documents)
+        findings = tuple(dict.fromkeys(found))
+        return Answer(request.revision, request.uri, findings, "", together, reached, documents)
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:

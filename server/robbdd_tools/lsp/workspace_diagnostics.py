@@ -1,7 +1,8 @@
 """Findings in the unopened model files of the workspace. They are computed in the background.
 
-A separate process with low priority validates one file after another. It validates all files when the client has
-started, and later those that are affected by changes on disk or in an editor.
+A separate process with low priority validates one file after another; files that import each other are validated
+together. It validates all files when the client has started, and later those that are affected by changes on disk or in
+an editor.
 """
 
 from __future__ import annotations
@@ -10,10 +11,11 @@ import asyncio
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
+from itertools import count
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.features.import_graph import imported_on_disk
+from robbdd_tools.features.import_graph import ImportGraph, imported_on_disk
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.lsp.shapes import ShapeValidator
 
@@ -54,8 +56,13 @@ class WorkspaceDiagnostics:
         self._validator = ShapeValidator(self._take, in_passing=True)
         self._changed: set[str] = set()
         self._everything = False
-        self._waiting: dict[str, None] = {}
-        self._asked: set[str] = set()
+        self._orders = count(1)
+        self._waiting: dict[str, int] = {}
+        """Files to request, with the number of the last order for each."""
+        self._asked: dict[str, int] = {}
+        """Requested files, with the number of the last order at the time of the request."""
+        self._order_number = 0
+        self._cycles: Mapping[str, int] = {}
         self._found: dict[str, Mapping[str, Findings]] = {}
         self._reached: dict[str, frozenset[str]] = {}
         self._published: dict[str, str] = {}
@@ -122,23 +129,31 @@ class WorkspaceDiagnostics:
             self._reached.pop(gone, None)
         # New imports of a changed file have not been reached from it yet.
         imported = set(map(spelling, await asyncio.to_thread(imported_on_disk, changed)))
+        self._cycles = await asyncio.to_thread(lambda: ImportGraph.of(files).cycles())
+        self._order_number = next(self._orders)
         for uri in files:
             is_new = everything or uri not in self._found or uri in imported
             if is_new or not changed.isdisjoint(self._reached.get(uri, ())):
-                self._waiting[uri] = None
+                self._waiting[uri] = self._order_number
         self._ask()
         self.publish_soon()
 
     def _ask(self) -> None:
         while len(self._asked) < AT_ONCE:
-            # A file that changes during validation is requeued, as the answer may be about its old state.
-            uri = next((uri for uri in self._waiting if uri not in self._asked), None)
+            # A file that changes during validation is requeued, as the answer may be about its old state. An answer
+            # about a file is also about those that form a cycle of imports with it.
+            requested = set(map(self._cycle, self._asked))
+            uri = next((uri for uri in self._waiting if self._cycle(uri) not in requested), None)
             if uri is None:
                 return
             del self._waiting[uri]
             if not self._server.is_open(uri):
-                self._asked.add(uri)
+                self._asked[uri] = self._order_number
                 self._server.spawn(self._ask_for(uri))
+
+    def _cycle(self, uri: str) -> object:
+        """Return a key that is equal for files that import each other according to their import lines."""
+        return self._cycles.get(uri, uri)
 
     async def _ask_for(self, uri: str) -> None:
         self._validator.request(await self._server.survey_request(uri))
@@ -147,18 +162,26 @@ class WorkspaceDiagnostics:
         self._server.spawn(self._keep(answer))
 
     async def _keep(self, answer: Answer) -> None:
+        spelling = self._server.project.spellings.of
+        together = tuple(map(spelling, answer.together))
         try:
             if not answer.error:
-                self._reached[answer.uri] = frozenset(map(self._server.project.spellings.of, answer.reached))
-                self._found[answer.uri] = await asyncio.to_thread(self._converted, answer)
+                self._reached |= dict.fromkeys((answer.uri, *together), frozenset(map(spelling, answer.reached)))
+                found = await asyncio.to_thread(self._converted, answer)
+                for uri in together:
+                    self._found[uri] = {uri: found.pop(uri, NOTHING)}
+                self._found[answer.uri] = {**self._found.get(answer.uri, {}), **found}
         finally:
-            self._asked.discard(answer.uri)
+            order = self._asked.pop(answer.uri, 0)
+            for uri in together:
+                if self._waiting.get(uri, order + 1) <= order:
+                    del self._waiting[uri]
             self._ask()
             self.publish_soon()
 
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
-        found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
+        found: dict[str, list[types.Diagnostic]] = {}
         # Hints matter only while editing a file; elsewhere they would hide errors and warnings.
         for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
             found.setdefault(self._server.project.spellings.of(one.uri), []).append(convert.diagnostic(documents, one))
