@@ -20,6 +20,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from robbdd_tools.base.printable import printable
+from robbdd_tools.commands.failure_summary import failure_summary
 from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
@@ -165,6 +166,8 @@ class Display:
             self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
+        for outcome, words in failure_summary(shown) if len(shown) > 1 else ():
+            self._console.print(plain(words, STYLES[outcome]))
         outcomes = [scenario.verdict for scenario in shown]
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]
         executions = _executions(finished)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.run.consequences import consequences
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, value_words
 
 if TYPE_CHECKING:
@@ -69,17 +70,14 @@ def _summary(clause: ClauseResult) -> str:
 
 
 def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[str]:
-    """Yield each clause with its place.
-
-    A reason that successive clauses share is printed once, after the last of them.
-    """
-    for number, clause in enumerate(failed, start=1):
+    """Yield each clause with its place. A clause that is unknown because of another one names that one."""
+    named = [(clause.name, clause) for clause in failed]
+    for clause, because in zip(failed, consequences(named), strict=True):
         yield f"{SIGNS[clause.verdict]} {printable(clause.name)}: {printable(plain_sentence(clause.sentence))}"
         place = file.place(clause.iri)
         if place is not None:
             yield f"    {printable(str(place))}"
-        repeated = number < len(failed) and failed[number].reason == clause.reason
-        yield f"    {_measured(clause) if repeated else _verdict_words(clause)}"
+        yield f"    {printable(because) or _verdict_words(clause)}"
 
 
 def _verdict_words(clause: ClauseResult) -> str:

@@ -10,7 +10,8 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import never_judged
-from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
+from robbdd_tools.run.consequences import consequences
+from robbdd_tools.run.report import SIGNS, plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult
 
 
@@ -68,13 +69,20 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 
 
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
-    """Yield the outcome and the text of each clause: its sentence, margin, instant and reason."""
-    for clause in scenario.spec.clauses:
-        judged = scenario.judged.get(clause.line) or never_judged(
-            0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED
-        )
-        role = clause.role.capitalize()
-        yield Outcome(judged.verdict), f"{verdict_words(judged, clause)}  [{role} {plain_sentence(clause.sentence)}]"
+    """Yield the outcome and the text of each clause: its sentence, margin, instant and reason.
+
+    A clause that is unknown because of another one names that one in place of the reason.
+    """
+    clauses = scenario.spec.clauses
+    every = [
+        scenario.judged.get(clause.line)
+        or never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
+        for clause in clauses
+    ]
+    names = (clause.name for clause in clauses)
+    for clause, judged, because in zip(clauses, every, consequences(zip(names, every, strict=True)), strict=True):
+        words = f"{SIGNS[Outcome.UNKNOWN]} {because}" if because else verdict_words(judged, clause)
+        yield Outcome(judged.verdict), f"{words}  [{clause.role.capitalize()} {plain_sentence(clause.sentence)}]"
 
 
 def _wall(scenario: ScenarioResult) -> float:

@@ -1,0 +1,50 @@
+"""The failures of a run by their causes, for the end of its report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.consequences import consequences
+from robbdd_tools.run.report import SIGNS, failure_words
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.messages import ClauseJudged
+    from robbdd_tools.protocol.specs import ClauseSpec
+    from robbdd_tools.run.results import ScenarioResult
+
+MAX_CAUSES = 5
+"""Maximum number of causes that are listed."""
+
+
+def failure_summary(scenarios: Iterable[ScenarioResult]) -> list[tuple[Outcome, str]]:
+    """Return a line for each cause of failures, the most frequent first: its clause, its reason and its number.
+
+    Clauses that are unknown only because of another one do not count. The worst margin represents all scenarios.
+    """
+    groups: dict[tuple[Outcome, str, str], list[tuple[ClauseSpec, ClauseJudged]]] = {}
+    for scenario in scenarios:
+        for clause, judged in _causes(scenario):
+            groups.setdefault((Outcome(judged.verdict), clause.name, judged.reason), []).append((clause, judged))
+    found = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0][0] is not Outcome.VIOLATED))
+    lines = [(outcome, _line(outcome, name, failures)) for (outcome, name, _), failures in found[:MAX_CAUSES]]
+    if len(found) > MAX_CAUSES:
+        lines.append((Outcome.UNKNOWN, f"… and {len(found) - MAX_CAUSES} more causes"))
+    return lines
+
+
+def _causes(scenario: ScenarioResult) -> Iterator[tuple[ClauseSpec, ClauseJudged]]:
+    clauses = [(one, scenario.judged[one.line]) for one in scenario.spec.clauses if one.line in scenario.judged]
+    named = [(clause.name, judged) for clause, judged in clauses]
+    for (clause, judged), because in zip(clauses, consequences(named), strict=True):
+        if judged.verdict != Outcome.HOLDS and not because:
+            yield clause, judged
+
+
+def _line(outcome: Outcome, name: str, failures: list[tuple[ClauseSpec, ClauseJudged]]) -> str:
+    clause, worst = min(failures, key=lambda failure: failure[1].robustness or 0.0)
+    if len(failures) == 1:
+        return f"{SIGNS[outcome]} {name}: {failure_words(worst, clause)}"
+    count = f"in {len(failures)} scenarios{'' if worst.robustness is None else ', worst'}"
+    return f"{SIGNS[outcome]} {name} {count}: {failure_words(worst, clause)}"
