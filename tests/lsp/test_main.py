@@ -155,7 +155,7 @@ async def test_messages_and_headers_are_bounded_over_tcp(wire: Wire) -> None:
 def test_only_the_time_of_a_header_is_limited_over_tcp(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tcp, "monotonic", partial(next, count(0, HEADER_SECONDS.default + 1)))
     ours, theirs = socket.socketpair()
-    with theirs, closing(tcp.Connection(ours)) as connection:
+    with theirs, closing(tcp.TcpConnection(ours)) as connection:
         for content in (b"{}", b"[]"):
             theirs.sendall(b"Content-Length: 2\r\n\r\n" + content[:1])
             assert connection.input.readline() == b"Content-Length: 2\r\n"

@@ -6,8 +6,10 @@ import io
 import json
 import os
 import re
+import select
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from subprocess import PIPE
 from typing import Any
@@ -16,6 +18,7 @@ import pytest
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.limits import MESSAGE_SIZE
+from robbdd_tools.lsp.standard_streams import StandardStreams
 from robbdd_tools.lsp.transport import LONGEST_HEADER, BoundedInput
 
 INVALID_REQUEST, REQUEST_FAILED = -32600, -32803
@@ -182,3 +185,34 @@ def test_exit_ends_the_process_while_its_work_hangs() -> None:
     )
     assert done.returncode == 0
     assert b"a thread is still running" in done.stderr
+
+
+def test_exit_ends_the_process_at_once_while_the_client_keeps_its_end_open() -> None:
+    # The client does not answer a request of the server, so the server reads on after ``exit``.
+    asking = {"id": 1, "method": "initialize", "params": {"capabilities": {"workspace": {"configuration": True}}}}
+    data = b"".join(map(framed, (asking, INITIALIZED, SHUTDOWN, EXIT)))
+    command = [sys.executable, "-m", "robbdd_tools.lsp.main"]
+    with subprocess.Popen(command, stdin=PIPE, stdout=PIPE, stderr=PIPE) as server:
+        assert server.stdin is not None
+        assert server.stderr is not None
+        server.stdin.write(data)
+        server.stdin.flush()
+        log = server.stderr.read()
+        assert server.wait(PATIENCE) == 0
+        assert b"a thread is still running" not in log
+
+
+@pytest.mark.skipif(not hasattr(select, "poll"), reason="a read can be interrupted where there is 'poll'")
+def test_a_closed_connection_ends_the_read_in_another_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    receiving, sending = os.pipe()
+    with os.fdopen(receiving, encoding="utf-8") as stream:
+        monkeypatch.setattr(sys, "stdin", stream)
+        streams = StandardStreams()
+        os.write(sending, b"\n")
+        with ThreadPoolExecutor(1) as thread:
+            assert thread.submit(streams.input.readline).result(PATIENCE) == b"\r\n"
+            waiting = thread.submit(streams.input.readline)
+            streams.close()
+            assert waiting.result(PATIENCE) == b""
+            assert thread.submit(streams.input.readline).result(PATIENCE) == b""
+        os.close(sending)

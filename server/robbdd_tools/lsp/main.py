@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
-from robbdd_tools.lsp.tcp import Connection, accept_client
-from robbdd_tools.lsp.transport import RefusalFilter, bounded, end_soon
+from robbdd_tools.lsp.standard_streams import StandardStreams
+from robbdd_tools.lsp.tcp import TcpConnection, accept_client
+from robbdd_tools.lsp.transport import RefusalFilter, end_soon
 
 LOOPBACK = "127.0.0.1"
 LARGEST_PORT = 65535
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         server = create_server()
     collect_rarely()
     if options.tcp is None:
-        server.start_io(bounded(sys.stdin.buffer))
+        server.start_connection(StandardStreams())
     else:
         try:
             client = accept_client(*options.tcp)
@@ -52,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             host, port = options.tcp
             reason = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or error
             parser.error(f"no client can connect to {host}:{port}: {reason}")
-        server.start_connection(Connection(client))
+        server.start_connection(TcpConnection(client))
     server.stop()
     code = server.exit_code()
     end_soon(code)

@@ -43,7 +43,7 @@ from robbdd_tools.names.project import Project, Snapshot
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.active_run import ActiveRun
-    from robbdd_tools.lsp.tcp import Connection
+    from robbdd_tools.lsp.transport import Connection
 
 Result = TypeVar("Result")
 _LOG = logging.getLogger(__name__)
@@ -280,7 +280,7 @@ class RobbddServer(LanguageServer):
         return protocol.exit_code
 
     def start_connection(self, connection: Connection) -> None:
-        """Serve a TCP client until it ends the session."""
+        """Serve a client until it ends the session."""
         self._connection = connection
         self.start_io(connection.input, connection.output)
 

@@ -31,7 +31,7 @@ def accept_client(host: str, port: int) -> socket.socket:
     return connection
 
 
-class Connection:
+class TcpConnection:
     """The input and output of one client."""
 
     def __init__(self, connection: socket.socket) -> None:

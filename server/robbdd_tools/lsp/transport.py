@@ -32,6 +32,17 @@ class HeaderTimer(Protocol):
         ...
 
 
+class Connection(Protocol):
+    """The streams of one client."""
+
+    input: BinaryIO
+    output: BinaryIO
+
+    def close(self) -> None:
+        """Close the connection, which also ends a read in another thread."""
+        ...
+
+
 class BoundedInput:
     """The lines and contents that pygls reads, with normalised headers.
 
