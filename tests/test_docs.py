@@ -53,7 +53,7 @@ def test_each_command_has_its_row() -> None:
 def test_the_page_on_simulation_has_each_predicate_and_robot() -> None:
     page = (DOCS / "simulation.md").read_text(encoding="utf-8")
     catalog = load_catalog()
-    words = [re.sub(r"<\w+>|[$#].*", "", one.phrase).strip() for one in catalog.predicates.values()]
+    words = [re.sub(r"^<\w+>|<.*|[$#].*", "", one.phrase).strip() for one in catalog.predicates.values()]
     assert [word for word in words if f"\n| {word} |" not in page] == []
     robots = catalog.robots.values()
     assert [one.name for one in robots if not any(f"`{prefix}…`" in page for prefix in one.prefixes)] == []

@@ -74,6 +74,12 @@ const predicates = phrases(
   "moves slower than",
   "is tilted less than",
   "it takes less than",
+  "is at rest",
+  "is entirely inside",
+  "touches",
+  "does not touch",
+  "presses",
+  "with less than",
   "does not collide",
 );
 

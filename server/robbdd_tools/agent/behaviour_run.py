@@ -87,12 +87,13 @@ class Timing:
     """The times of an execution in simulated s.
 
     They are the minimum idle time before the first behaviour, the time of recording after the scenario's end, and the
-    timeout.
+    timeout. ``touching`` are the elements whose contact forces are recorded; a workspace means its objects.
     """
 
     lead: float = 0.5
     tail: float = 0.0
     timeout: float = TIMEOUT
+    touching: frozenset[str] = frozenset()
 
 
 class BehaviourRun:
@@ -121,6 +122,8 @@ class BehaviourRun:
         self.tree = None if spec.tree is None else _tree_run(spec.tree, self)
         world = build_world(spec.scene, spec.seed, actor, spec.instance)
         self.simulation = Simulation(world)
+        carriers = {carrier for name in self._timing.touching for carrier, _ in world.cast.regions.get(name, ())}
+        self.simulation.watch_touches(self._timing.touching | carriers)
         self.reaches = ReachSampler(self.simulation)
         self._controllers: dict[str, PickPlace] = {}
         self.stamps: list[EventStamp] = []

@@ -132,6 +132,7 @@ class Execution:
     def complete(self, trace: Trace) -> Trace:
         """Return a trace to which all data except its samples has been added."""
         size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
+        touches = self.simulation.touches
         return replace(
             trace,
             reaches=self.course.reaches.record(size),
@@ -139,6 +140,8 @@ class Execution:
             forces=forces.peaks(size),
             impulses=forces.impulses(size),
             watched=forces.agents,
+            touches={} if touches is None else touches.peaks(size),
+            touch_watched=() if touches is None else touches.watched,
             contacts=forces.contacts(trace.times),
             immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
             outlines=self.course.outlines,

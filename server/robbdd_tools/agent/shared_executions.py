@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_run import TIMEOUT, BehaviourRun, Call, Timing
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.contacts import TOUCH
+from robbdd_tools.judging.quantities import fluents_with_quantity
 from robbdd_tools.judging.scenario_clauses import behaviour_calls
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.protocol.clauses import AnyOf, BehaviourCall, Clause, fluents_of
@@ -72,7 +74,11 @@ def call_of(call: BehaviourCall) -> Call:
 
 
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
-    """Return times that leave room for the windows of all clauses of the scenario or of its behaviour tree."""
+    """Return times that leave room for the windows of all clauses of the scenario or of its behaviour tree.
+
+    Scenarios that share an execution record the contact forces that the clauses of the first one need.
+    """
+    clauses = tuple(clauses)
     lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)
     for clause in clauses if spec.tree is None else ():
         for fluent in fluents_of(clause):
@@ -84,4 +90,11 @@ def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
                 case _:
                     pass
     timeout = None if spec.execution is None else spec.execution.timeout
-    return Timing(lead, tail, timeout or TIMEOUT)
+    touching = frozenset(
+        str(arguments[slot])
+        for clause in clauses
+        for _, arguments in fluents_with_quantity(clause, TOUCH)
+        for slot in ("one", "other")
+        if slot in arguments
+    )
+    return Timing(lead, tail, timeout or TIMEOUT, touching)

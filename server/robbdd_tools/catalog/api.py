@@ -90,6 +90,10 @@ class Evidence(Protocol):
         """Mean velocity of that position since the previous sample, m/s, shape (n, 3)."""
         ...
 
+    def turning(self, name: str) -> FloatArray:
+        """Mean angular speed since the previous sample, rad/s, shape (n,)."""
+        ...
+
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
         """Return the position at the last sample at or before each of ``times`` (n,), shape (n, 3).
 
@@ -134,6 +138,13 @@ class Evidence(Protocol):
 
         This is the force between the element and the agent or the object that the agent grips. The weight of the
         gripped object is not counted.
+        """
+        ...
+
+    def touch(self, one: str, other: str) -> FloatArray:
+        """Return the largest contact force (N) between two elements themselves since the previous sample, shape (n,).
+
+        What an agent grips is not part of it.
         """
         ...
 

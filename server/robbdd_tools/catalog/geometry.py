@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.settings import setting_of
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import Evidence, FloatArray, Region, Vector
+    from robbdd_tools.catalog.api import Evidence, FloatArray, Outline, Region, Vector
 
 
 CONTACT = 1e-3
@@ -38,19 +38,22 @@ def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> 
     return origin + relative + orientation[:, :1] * twice + np.cross(axis, twice)
 
 
-def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> FloatArray:
+def inside_margin(
+    evidence: Evidence, name: str, workspaces: Iterable[str], outline: Outline | None = None
+) -> FloatArray:
     """Distance (m) from a body to the nearest face of the space of some workspaces, positive inside, shape (n,).
 
     The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, minus
     the parts that are inside other regions with a higher floor: an object on a shelf is on the shelf, not on the table
-    below. The body's position counts; with the configuration ``whole_object`` its whole outline does, except at the
-    lowest face, which carries it. Regions that the body itself carries are ignored. Raises ``KeyError`` for a workspace
-    without regions, or with the body's own only.
+    below. The body's position counts; with an ``outline``, or with the configuration ``whole_object``, its whole
+    outline does, except at the lowest face, which carries it. Regions that the body itself carries are ignored. Raises
+    ``KeyError`` for a workspace without regions, or with the body's own only.
     """
     import numpy as np
 
     position = evidence.position(name)
-    outline = evidence.outline(name) if is_configured(evidence, name, "whole_object") else ()
+    if outline is None:
+        outline = evidence.outline(name) if is_configured(evidence, name, "whole_object") else ()
     balls = [(out_of_frame(center, position, evidence.orientation(name)), radius) for center, radius in outline]
     own = _without(name, (place for workspace in workspaces for place in _space(evidence, workspace)))
     if not own:
@@ -71,6 +74,21 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
             inside = np.where(higher > floor, np.minimum(inside, -taken), inside)
         margins = np.maximum(margins, inside)
     return margins
+
+
+def farthest_point(evidence: Evidence, name: str) -> float:
+    """Return the largest distance (m) of a point of an object from its position. Raises ``KeyError`` like ``whole``."""
+    from math import hypot
+
+    return max(hypot(*center) + radius for center, radius in whole(evidence, name))
+
+
+def whole(evidence: Evidence, name: str) -> Outline:
+    """Return the outline of an object. Raises ``KeyError`` if it is unknown: its position is not enough."""
+    outline = evidence.outline(name)
+    if not outline:
+        raise KeyError(f"outline of {name}")
+    return outline
 
 
 def _without(carrier: str, places: Iterable[tuple[str, Region]]) -> dict[tuple[str, Region], None]:

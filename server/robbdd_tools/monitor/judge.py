@@ -69,6 +69,23 @@ class WindowEvidence:
         steps = np.diff(path, axis=0) / np.diff(times)[:, None]
         return self._observed(name, np.concatenate([steps[:1], steps])[self._rows], self.times)
 
+    def turning(self, name: str) -> FloatArray:
+        """Return the mean angular speed of an element since the previous sample, rad/s, shape (n,).
+
+        At the first sample, it is the mean speed until the next sample. In a trace of one sample, it is NaN. Raises
+        ``KeyError`` and ``Unobserved``.
+        """
+        turns, times = self.trace.orientations[:, self.trace.column(name)], self.trace.times
+        if len(times) < 2:
+            return np.full(1, np.nan)
+        # The distance of two unit quaternions is twice the sine of a quarter of the angle; q and -q are the same turn.
+        chords = np.minimum(
+            np.linalg.norm(turns[1:] - turns[:-1], axis=1), np.linalg.norm(turns[1:] + turns[:-1], axis=1)
+        )
+        steps = 4.0 * np.arcsin(np.clip(chords / 2.0, 0.0, 1.0)) / np.diff(times)
+        speeds = np.concatenate([steps[:1], steps])[self._rows]
+        return self._observed(name, speeds[:, None], self.times)[:, 0]
+
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
         """Return the positions at the last sample at or before each of ``times``, m, shape (n, 3).
 
@@ -117,6 +134,16 @@ class WindowEvidence:
         if agent in trace.watched and name in trace.names:
             return np.zeros(self.window.last + 1 - self.window.first)
         raise KeyError(f"contact forces of {agent} on {name}")
+
+    def touch(self, one: str, other: str) -> FloatArray:
+        """Return the largest contact force since the previous sample, N, shape (n,). Raises ``KeyError``."""
+        trace = self.trace
+        for first, second in ((one, other), (other, one)):
+            if (first, second) in trace.touches:
+                return trace.touches[first, second][self._rows]
+            if first in trace.touch_watched and second in trace.names:
+                return np.zeros(self.window.last + 1 - self.window.first)
+        raise KeyError(f"contact forces between {one} and {other}")
 
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""

@@ -56,6 +56,8 @@ class Trace:
     - ``settings``: maps an element and the name of a configuration to its value.
     - ``forces``: maps an agent and a touched element to the largest contact force (N) in any physics step since the
       previous sample (n,). For the agents in ``watched``, all touched elements are included.
+    - ``touches``: maps two elements to the largest contact force (N) between them, without what they grip, in any
+      physics step since the previous sample (n,). For those in ``touch_watched``, all touched elements are included.
     - ``impulses``: like ``forces``, for the impulse (N s) since the previous sample.
     - ``contacts``: the list of these contacts.
     - ``immovable``: the elements that do not move when they are hit: fixed objects, and agents.
@@ -91,6 +93,8 @@ class Trace:
     pending: tuple[str, ...] = ()
     log: str = ""
     truths: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
+    touches: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
+    touch_watched: tuple[str, ...] = ()
 
     @property
     def end(self) -> float:

@@ -90,11 +90,11 @@ class ContactForces:
 
     def peaks(self, size: int) -> Mapping[Pair, FloatArray]:
         """Return the largest force (N) before each of the first ``size`` samples, by pair in contact: (size,)."""
-        return _series(self._peaks, size)
+        return series(self._peaks, size)
 
     def impulses(self, size: int) -> Mapping[Pair, FloatArray]:
         """Return the impulse (N s) before each of the first ``size`` samples, by pair in contact: (size,)."""
-        return _series(self._impulses, size)
+        return series(self._impulses, size)
 
     def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
         """Return the contacts so far, earliest first; ``times`` (n,) are those of the samples, s.
@@ -192,7 +192,8 @@ class _Sum:
         self.impulse += force * duration
 
 
-def _series(rows: Mapping[Pair, Mapping[int, float]], size: int) -> Mapping[Pair, FloatArray]:
+def series(rows: Mapping[Pair, Mapping[int, float]], size: int) -> Mapping[Pair, FloatArray]:
+    """Return values by row as arrays (size,), 0 in rows without a value."""
     found: dict[Pair, FloatArray] = {}
     for pair, values in sorted(rows.items()):
         series = np.zeros(size)

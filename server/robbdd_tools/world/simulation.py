@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from functools import cached_property
 from math import isfinite
 from time import perf_counter
@@ -17,6 +18,7 @@ from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.holding import Grips
 from robbdd_tools.world.recorder import Bodies, Recorder
 from robbdd_tools.world.robot import Robot
+from robbdd_tools.world.touches import Touches
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -67,6 +69,7 @@ class Simulation:
         ]
         limited = {element for element, name in world.cast.judged if name == "force_limit"}
         self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
+        self.touches: Touches | None = None
         self._go_home()
         things = [self.data.body(name) for name in world.cast.objects]
         unset = len(self.robots)
@@ -80,6 +83,11 @@ class Simulation:
             np.array([self._column[name] for name in self.robots], dtype=int),
         )
         self.recorder = Recorder(bodies, tuple(self.robots), int(self.model.nq))
+
+    def watch_touches(self, elements: AbstractSet[str]) -> None:
+        """Record the contact forces of some elements from the next ``restart`` on."""
+        chosen = [name for name in (*self.world.cast.objects, *self.robots) if name in elements]
+        self.touches = Touches(self.model, chosen, self.world.cast.objects, self.robots) if chosen else None
 
     @property
     def time(self) -> float:
@@ -108,6 +116,8 @@ class Simulation:
         self.belts.start(self.data)
         self.recorder.clear()
         self.forces.clear()
+        if self.touches is not None:
+            self.touches.restart()
         self.record()
 
     def tick(self) -> None:
@@ -127,6 +137,8 @@ class Simulation:
         mujoco.mj_kinematics(self.model, self.data)
         self._grips.find(self.data)
         self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
+        if self.touches is not None:
+            self.touches.record()
         rows = self.recorder.append(self.time, self._qpos, self._grips.held)
         for row, (position, rotation) in zip(rows, self._tools, strict=True):
             row[:3] = position
@@ -171,6 +183,8 @@ class Simulation:
         for _ in range(SUBSTEPS):
             mujoco.mj_step(self.model, self.data)
             self.forces.measure(self.data)
+            if self.touches is not None:
+                self.touches.measure(self.data)
         self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
         # A target that is not moved stays in place.

@@ -1,0 +1,38 @@
+"""An object is at rest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.geometry import farthest_point
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+LIMIT = 0.01
+"""Speed (m/s) below which a point of an object is at rest, as for *does not drop*."""
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Limit minus an upper bound of the speed of all points of the object since the previous sample, m/s, shape (n,).
+
+    The bound is the speed of the object's position, plus the angular speed times the distance of its farthest point.
+    """
+    import numpy as np
+
+    name = str(arguments["object"])
+    shift = np.linalg.norm(evidence.velocity(name), axis=1)
+    return LIMIT - shift - evidence.turning(name) * farthest_point(evidence, name)
+
+
+IS_AT_REST = Predicate(
+    name="is-at-rest",
+    phrase="<object> is at rest",
+    rdf_type="rbw:IsAtRestPredicate",
+    slots=(Slot("object", Kind.OBJECT, "bdd:ref-object"),),
+    sentence='"{object}" is at rest',
+    unit="m/s",
+    doc="No point of the object moves faster than 0.01 m/s, neither by a shift nor by a turn.",
+    evaluate=margin,
+)
