@@ -25,7 +25,7 @@ ALL = [
 
 @pytest.fixture(scope="module", autouse=True)
 def loaded() -> None:
-    """Load all that a session loads: pytester unloads it afterwards, and neither importlib_metadata nor numpy can be unloaded."""
+    """Load all that a session loads: pytester unloads it, and importlib_metadata and numpy cannot be unloaded."""
     import_module("numpy")
     import_module("robbdd_tools.pytest_plugin.session_hooks")
     load(EXAMPLES / "pickplace" / "pickplace.bdd").scenarios()
