@@ -142,10 +142,7 @@ class Evidence(Protocol):
         ...
 
     def touch(self, one: str, other: str) -> FloatArray:
-        """Return the largest contact force (N) between two elements themselves since the previous sample, shape (n,).
-
-        What an agent grips is not part of it.
-        """
+        """Largest contact force (N) since the previous sample, shape (n,), without what an agent grips."""
         ...
 
     def is_immovable(self, name: str) -> bool:

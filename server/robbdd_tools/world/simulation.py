@@ -18,7 +18,7 @@ from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.holding import Grips
 from robbdd_tools.world.recorder import Bodies, Recorder
 from robbdd_tools.world.robot import Robot
-from robbdd_tools.world.touches import Touches
+from robbdd_tools.world.touch_forces import TouchForces
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -69,7 +69,7 @@ class Simulation:
         ]
         limited = {element for element, name in world.cast.judged if name == "force_limit"}
         self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
-        self.touches: Touches | None = None
+        self.touches: TouchForces | None = None
         self._go_home()
         things = [self.data.body(name) for name in world.cast.objects]
         unset = len(self.robots)
@@ -87,7 +87,7 @@ class Simulation:
     def watch_touches(self, elements: AbstractSet[str]) -> None:
         """Record the contact forces of some elements from the next ``restart`` on."""
         chosen = [name for name in (*self.world.cast.objects, *self.robots) if name in elements]
-        self.touches = Touches(self.model, chosen, self.world.cast.objects, self.robots) if chosen else None
+        self.touches = TouchForces(self.model, chosen, self.world.cast.objects, self.robots) if chosen else None
 
     @property
     def time(self) -> float:

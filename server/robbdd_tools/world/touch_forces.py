@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 
-class Touches:
+class TouchForces:
     """Forces between each of some elements and the elements that it touches.
 
     Per sample and pair: the largest force (N) since the previous sample, summed over the contacts of the pair. The
