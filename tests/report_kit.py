@@ -46,13 +46,18 @@ def reported(case: Fixture) -> Iterator[str]:
 
 def _finding(case: Fixture, entry: Diagnostic) -> Iterator[str]:
     message = " ".join(_NAMED.findall(entry.message)) if entry.code in OF_CATALOG else entry.message
-    yield f"{entry.code} {entry.severity.name.lower()} {place(case, entry.uri, entry.span)}"
+    yield heading(case, entry)
     if message:
         yield f"  {message}"
     for related in entry.related:
         yield f"  see {place(case, related.uri, related.span)} {related.message}"
     for fix in fixes_of(case, entry)[:MOST_FIXES]:
         yield f"  fix {fix.title}: {' and '.join(_changes(case, fix))}"
+
+
+def heading(case: Fixture, entry: Diagnostic) -> str:
+    """Return code, severity and place of a finding."""
+    return f"{entry.code} {entry.severity.name.lower()} {place(case, entry.uri, entry.span)}"
 
 
 def _changes(case: Fixture, fix: Fix) -> Iterator[str]:

@@ -1,22 +1,45 @@
-"""What rules report of models, and what each of their fixes changes; ``reports/`` has the models and the answers."""
+"""What rules report of models and of their graphs, and what each of their fixes changes; ``reports/`` has the models and the answers."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from report_kit import check_report
+from kit import Fixture
+from report_kit import OF_CATALOG, check_report, heading, reported
+from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.checks import DECLARATION_RULES, FILE_RULES
+from robbdd_tools.checks.graph_files import graph_findings
+from robbdd_tools.graph.write.build import build_graph
 
 REPORTS = sorted((Path(__file__).parent / "reports").glob("*.txt"))
 ON_DISK = {"python-source"}
 """Rules that read files beside the model; ``test_executions.py`` writes these."""
 
 
+def text_and_graph(case: Fixture) -> Iterator[str]:
+    """Yield the report on a fixture, then the findings on the graph of its first file.
+
+    Of findings with the same code and place, such as those on similar elements, only the first is reported. Elements
+    without a model have no message there: ``test_graph_files.py`` checks it.
+    """
+    yield from reported(case)
+    found: dict[str, Diagnostic] = {}
+    for entry in graph_findings(build_graph(case.snapshot, case.uri)):
+        found.setdefault(heading(case, entry), entry)
+    if found:
+        yield "//== reported of the graph"
+    for line, entry in found.items():
+        yield line
+        if entry.code not in OF_CATALOG:
+            yield f"  {entry.message}"
+
+
 @pytest.mark.parametrize("path", REPORTS, ids=lambda path: path.stem)
 def test_a_model_is_reported_as_before(path: Path) -> None:
-    check_report(path)
+    check_report(path, text_and_graph)
 
 
 def test_every_rule_has_a_model_that_it_reports() -> None:
