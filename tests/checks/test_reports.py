@@ -1,4 +1,4 @@
-"""What rules report of models and of their graphs, and what each of their fixes changes; ``reports/`` has the models and the answers."""
+"""Findings on models and on their graphs, and what each fix changes; ``reports/`` has the models and the answers."""
 
 from __future__ import annotations
 
