@@ -272,6 +272,7 @@ SYSTEM_NAMES = {"sys.platform", "os.name", "platform.system"}
 SYSTEM_HOMES = {
     "base.processes",
     "base.descendants",
+    "base.interruptible_input",
     "base.locks",
     "base.renames",
     "base.user_settings",

@@ -6,7 +6,6 @@ import io
 import json
 import os
 import re
-import select
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -17,8 +16,9 @@ from typing import Any
 import pytest
 
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.interruptible_input import CAN_INTERRUPT
 from robbdd_tools.base.limits import MESSAGE_SIZE
-from robbdd_tools.lsp.standard_streams import StandardStreams
+from robbdd_tools.lsp.stdio import StdioConnection
 from robbdd_tools.lsp.transport import LONGEST_HEADER, BoundedInput
 
 INVALID_REQUEST, REQUEST_FAILED = -32600, -32803
@@ -202,12 +202,12 @@ def test_exit_ends_the_process_at_once_while_the_client_keeps_its_end_open() -> 
         assert b"a thread is still running" not in log
 
 
-@pytest.mark.skipif(not hasattr(select, "poll"), reason="a read can be interrupted where there is 'poll'")
+@pytest.mark.skipif(not CAN_INTERRUPT, reason="a read can be interrupted where there is 'poll'")
 def test_a_closed_connection_ends_the_read_in_another_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     receiving, sending = os.pipe()
     with os.fdopen(receiving, encoding="utf-8") as stream:
         monkeypatch.setattr(sys, "stdin", stream)
-        streams = StandardStreams()
+        streams = StdioConnection()
         os.write(sending, b"\n")
         with ThreadPoolExecutor(1) as thread:
             assert thread.submit(streams.input.readline).result(PATIENCE) == b"\r\n"

@@ -33,7 +33,7 @@ export function failedIn(answer: unknown): Failed | undefined {
   return typeof run === "number" ? { run, index: answer["failed"] } : undefined;
 }
 
-/** Say how it ended, with the replay of the failure. */
+/** Show how it ended, with the replay of the failure. */
 export function tellFailure(answer: unknown, replay: (failed: Failed) => void): void {
   const failed = failedIn(answer);
   if (failed !== undefined) {

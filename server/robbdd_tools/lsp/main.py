@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
-from robbdd_tools.lsp.standard_streams import StandardStreams
+from robbdd_tools.lsp.stdio import StdioConnection
 from robbdd_tools.lsp.tcp import TcpConnection, accept_client
 from robbdd_tools.lsp.transport import RefusalFilter, end_soon
 
@@ -45,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         server = create_server()
     collect_rarely()
     if options.tcp is None:
-        server.start_connection(StandardStreams())
+        server.start_connection(StdioConnection())
     else:
         try:
             client = accept_client(*options.tcp)

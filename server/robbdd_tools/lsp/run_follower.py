@@ -21,7 +21,6 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
-from robbdd_tools.run.recording import first_failure
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ class RunFollower:
         outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
         counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
         total, cancelled = len(self._results.scenarios), self._active.cancelled
-        failed = first_failure(self._results)
+        failed = self._results.first_failure()
         return {"run": self._active.id, "total": total, "cancelled": cancelled, "failed": failed, **counts}
 
     def _hear(self, message: RunMessage) -> None:
@@ -81,7 +80,7 @@ class RunFollower:
         """Close the scenarios that are still open, and remove results that no longer belong to the model."""
         ending = self._run.ending
         stops = self._active.options.stop_on_failure
-        first = first_failure(self._results) if stops else None
+        first = self._results.first_failure() if stops else None
         for judged in self._results.close(ending):
             self._take(judged, left_open=stops or self._active.cancelled)
         for index, scenario in self._active.judged.items():

@@ -1,4 +1,4 @@
-"""Which clauses of an execution are unknown only because of another clause, which has the reason."""
+"""Find the clauses that are unknown only because of another clause, which has the reason."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     MarginRanges,
@@ -145,7 +145,7 @@ class Recording:
         number = self._place.number
         with self._writing() as connection:
             results = restored(connection, number, self.manifest)
-            first = first_failure(results) if self._stops else None
+            first = results.first_failure() if self._stops else None
             if first is not None:
                 # Which later executions were finished depends on the number of processes.
                 connection.execute("DELETE FROM execution WHERE run = ? AND idx > ?", (number, first))
@@ -247,7 +247,7 @@ def pending(results: RunResults, *, stops: bool) -> list[int]:
     If one of several scenarios that share an execution is open, all of them are executed again. If the run ``stops`` at
     its first failure, scenarios after a known failure are left out.
     """
-    first = first_failure(results) if stops else None
+    first = results.first_failure() if stops else None
     wanted = [
         index
         for index, scenario in enumerate(results.scenarios)
@@ -260,14 +260,6 @@ def pending(results: RunResults, *, stops: bool) -> list[int]:
         for index, scenario in enumerate(results.scenarios)
         if index in open_ones or (scenario.spec.tree is not None and scenario.spec.tree.name in trees)
     ]
-
-
-def first_failure(results: RunResults) -> int | None:
-    """Return the number of the first finished scenario with a clause that does not hold."""
-    for index, scenario in enumerate(results.scenarios):
-        if scenario.finished is not None and any(one.verdict != Outcome.HOLDS for one in scenario.judged.values()):
-            return index
-    return None
 
 
 def failure_reason(error: OSError) -> str:

@@ -120,6 +120,13 @@ class RunResults:
     def _clause(self, index: int, line: int) -> ClauseSpec:
         return next(clause for clause in self.scenarios[index].spec.clauses if clause.line == line)
 
+    def first_failure(self) -> int | None:
+        """Return the number of the first finished scenario with a clause that does not hold."""
+        for index, scenario in enumerate(self.scenarios):
+            if scenario.finished is not None and any(one.verdict != Outcome.HOLDS for one in scenario.judged.values()):
+                return index
+        return None
+
     def count(self, outcome: Outcome) -> int:
         """Return the number of scenarios whose verdict is ``outcome``."""
         return sum(scenario.verdict is outcome for scenario in self.scenarios)
