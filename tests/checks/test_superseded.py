@@ -19,6 +19,9 @@ MISTAKES = {
     "empty-set": MODEL.replace("{ <arms.panda> }", "{ }"),
     "type-conflict": MODEL.replace("{ <arms.panda> }", "{ <arms.panda>, <parts.bolt> }"),
     "empty-duration": MODEL.replace("until <end>", "until <start>"),
+    "quantity": MODEL.replace(
+        "in-tray: holds(<part> is located at <goal>", "in-tray: holds(<part> is tilted less than 5 m"
+    ),
     "duplicate-iri": MODEL + TEMPLATE.replace("fetch", "bring").replace("in-tray", "at-tray"),
     "foreign-variable": MODEL.replace("ns t =", "ns o = 'https://example.org/o/'\nns t =")
     + TEMPLATE.replace("fetch", "bring").replace("(ns=t)", "(ns=o)")

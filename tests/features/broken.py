@@ -87,6 +87,13 @@ def _paced(setting: str) -> str:
     )
 
 
+_TILTED = (
+    EVENTS
+    + TEMPLATE.replace("<part> is located at <goal>, 0.5", "<part> is tilted less than <most>, 0.5").replace(
+        "var goal", "var goal var most"
+    )
+    + STORY.replace("var <fetch.robot>:", "var <fetch.most>: { MOST } var <fetch.robot>:")
+)
 BROKEN: dict[str, list[str]] = {
     "syntax": [
         _swapped("before <pick", "befor <pick"),
@@ -98,6 +105,11 @@ BROKEN: dict[str, list[str]] = {
         _swapped("    }\n}", "    }\n"),
         "//- lab.scene\n" + SCENE.replace("workspace bench_ws,", "workspac bench_ws,"),
         "//- lab.scene\n" + SCENE.replace("object bolt, object", "object bolt object"),
+    ],
+    "quantity": [
+        _swapped("<part> is located at <goal>, 0.5", "<part> is tilted less than 5 cm, 0.5"),
+        _swapped("<part> is located at <goal>, 0.5", "<robot> presses <part> with less than .5e1m/s, 0.5"),
+        _TILTED.replace("MOST", "5 m"),
     ],
     "unknown-name": [
         _swapped("before <pick-start>", "before <pik-start>"),
@@ -170,6 +182,7 @@ BROKEN: dict[str, list[str]] = {
         story(_HEADER + _ROW.replace("<parts.bolt>", "<arms.ur10>") + _ROW.replace("<parts.bolt>", "ws set <places>")),
         story(LINES + "                set var <fetch.goals>: select 1 combinations from <arms>\n", SETS),
         EVENTS + SETS.replace("in <goals>", "in <arms>"),
+        _TILTED.replace("MOST", "5"),
     ],
     "not-in-scene": [
         "//- main.bdd\n" + _swapped("<places.tray_ws>", "<places.shelf_ws>") + _SHELF,

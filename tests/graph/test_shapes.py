@@ -15,7 +15,7 @@ from rdflib.term import Node
 from graph.models import EVERYTHING
 from graph.statements import built
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import SHAPES, expand
+from robbdd_tools.graph.rdf.vocabulary import QUANTITY, SHAPES, expand
 from robbdd_tools.graph.shapes.installed import load_shapes
 from robbdd_tools.graph.shapes.validate import validate
 from robbdd_tools.graph.write.build import BuiltGraph
@@ -35,6 +35,11 @@ EXECUTION = [
 DAMAGE: dict[str, list[str]] = {
     "after-one-event": ["- t:taken time:after-event"],
     "after-only": ["+ t:taken time:before-event t:end"],
+    "angle-value": ["- t:level rbw:limit", "+ t:level rbw:limit t:var-robot"],
+    "force-value": ["+ t:at a rbw:PressesWithLessThanPredicate", "+ t:at rbw:limit t:var-robot"],
+    "length-value": ["- t:apart rbw:distance", "+ t:apart rbw:distance t:var-robot"],
+    "speed-value": ["- t:slow rbw:limit", "+ t:slow rbw:limit t:var-robot"],
+    "time-value": ["- t:fast rbw:limit", "+ t:fast rbw:limit t:var-robot"],
     "agent-members": ["- lab:bench_scene-scene-has-agn agn:has-agent"],
     "agent-value": [f"set {TABLE} bdd:rows ((lab:nut lab:nut lab:tray_ws 1 2 ()))"],
     "before-one-event": ["- t:seen time:before-event"],
@@ -212,6 +217,29 @@ def test_no_shape_is_without_a_test() -> None:
     named = {str(name).removeprefix(SHAPES) for name in shapes.subjects(RDF.type, SH.PropertyShape)}
     with_message = {str(name).removeprefix(SHAPES) for name in shapes.subjects(SH.message)}
     assert named | with_message == set(DAMAGE) | {f"{word}-{slot}" for word, slot in word_slots()}
+
+
+@pytest.mark.parametrize(
+    ("term", "value", "is_length"),
+    [
+        ("cdt:ucum", "0.3 m", True),
+        ("cdt:ucum", "-3e-1 mm", True),
+        ("cdt:ucum", "0.3 m/s", False),
+        ("cdt:ucum", "m", False),
+        ("cdt:ucum", "0.3", False),
+        ("xsd:string", "0.3 m", False),
+    ],
+)
+def test_a_quantity_in_a_graph_has_the_dimension_that_its_predicate_needs(
+    term: str, value: str, is_length: bool
+) -> None:
+    graph = Graph()
+    for triple in sound().graph:
+        graph.add(triple)
+    datatype = QUANTITY if term == "cdt:ucum" else expand(term)
+    graph.set((node("t:apart"), URIRef(expand("rbw:distance")), Literal(value, datatype=URIRef(datatype))))
+    found = codes(replace(sound(), graph=graph))
+    assert found == (set() if is_length else {"is-farther-than-distance"})
 
 
 @pytest.mark.parametrize(("word", "slot"), word_slots())

@@ -65,13 +65,18 @@ def units_of(dimension: str) -> tuple[str, ...]:
 def read_quantity(text: str, dimension: str) -> Quantity:
     """Return the quantity that a text states, such as ``0.25 m/s``. Raises ``QuantityError``."""
     match = _QUANTITY.fullmatch(text.strip())
-    example = f"write {_article(dimension)} with its unit, as in '5 {units_of(dimension)[0]}'"
+    example = with_unit(dimension)
     if match is None or match[2] not in UNITS:
         raise QuantityError(f"'{text}' has no unit: {example}")
     measures = UNITS[match[2]][0]
     if measures != dimension:
         raise QuantityError(f"'{text}' is {_article(measures)}, not {_article(dimension)}: {example}")
     return Quantity(float(match[1]), match[2])
+
+
+def with_unit(dimension: str) -> str:
+    """Return the words that tell how to write a quantity."""
+    return f"write {_article(dimension)} with its unit, as in '5 {units_of(dimension)[0]}'"
 
 
 def _article(noun: str) -> str:

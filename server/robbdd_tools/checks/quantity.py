@@ -10,6 +10,7 @@ from robbdd_tools.base.quantity_units import QuantityError, read_quantity
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.replacements import with_units
 from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.names.types import variable_key, written_elements
 from robbdd_tools.names.uses import clauses_of
@@ -31,7 +32,8 @@ def quantity(site: Site) -> Iterator[Diagnostic]:
         for slot, written in _slots(clauses):
             problem = _problem(written.text, slot) if isinstance(written, tree.Quantity) else ""
             if problem:
-                yield finding(site, written, Severity.ERROR, CODE, problem)
+                fixes = tuple(with_units(site, written, slot.dimension))
+                yield finding(site, written, Severity.ERROR, CODE, problem, fixes=fixes)
     for scenario in scenarios(site):
         yield from _values(scenario)
 
@@ -54,7 +56,8 @@ def _values(scenario: Scenario) -> Iterator[Diagnostic]:
                     problem = _problem(element.name, slot)
                     if problem:
                         related = (related_to(site, ref, f"the {slot.name} that it is used for"),)
-                        yield finding(scenario.site, node, Severity.ERROR, CODE, problem, related)
+                        fixes = tuple(with_units(scenario.site, node, slot.dimension))
+                        yield finding(scenario.site, node, Severity.ERROR, CODE, problem, related, fixes)
                         break
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from robbdd_tools.checks.finding import MAX_OFFERED, change
+from robbdd_tools.base.quantity_units import units_of
+from robbdd_tools.checks.finding import MAX_OFFERED, change, written_text
 from robbdd_tools.names.types import narrowed, variable_key
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -43,6 +44,15 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
     taken = {value.path for _, value in phrase.arguments if isinstance(value, tree.Ref)} if phrase is not None else ()
     fitting = [name for name, kinds in others.items() if kinds & use.kinds and name not in taken]
     yield from (change(site, f"Change to '{name}'", use.ref, name) for name in fitting[:MAX_OFFERED])
+
+
+def with_units(site: Site, node: tree.Node, dimension: str) -> Iterator[Fix]:
+    """Yield fixes that give a written number, or a quantity of another dimension, each unit of a dimension."""
+    if isinstance(node, tree.Number | tree.Quantity):
+        written = node.text if isinstance(node, tree.Quantity) else written_text(site, node)
+        for unit in units_of(dimension):
+            quantity = f"{written.partition(' ')[0]} {unit}"
+            yield change(site, f"Change to '{quantity}'", node, quantity)
 
 
 def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kinds, written: set[str]) -> Iterator[Fix]:

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.read.variable_roles import value_shape
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -26,7 +31,7 @@ SUPERSEDED = {
         "shacl-horizon-number",
     ),
 }
-"""Code of a rule → codes of the shapes that report the same mistake."""
+"""Code of a rule → codes of the shapes that report the same mistake, besides those of quantities."""
 
 
 def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -36,10 +41,21 @@ def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic])
     """
     reported: dict[tuple[str, str], list[Span]] = {}
     for finding in fast:
-        for code in SUPERSEDED.get(finding.code, ()):
+        for code in (*SUPERSEDED.get(finding.code, ()), *_quantity_shapes(finding.code)):
             for uri, span in ((finding.uri, finding.span), *((place.uri, place.span) for place in finding.related)):
                 reported.setdefault((uri, code), []).append(span)
     return [shape for shape in shapes if not _is_reported(shape, reported.get((shape.uri, shape.code), []))]
+
+
+@cache
+def _quantity_shapes(rule: str) -> tuple[str, ...]:
+    """Return the codes of the shapes of quantities that report the same mistake as a rule."""
+    words = load_catalog().predicates.values()
+    slots = [(word, slot) for word in words for slot in word.slots if slot.kind is Kind.QUANTITY]
+    values = tuple(f"shacl-{value_shape(slot.dimension)}" for _, slot in slots)
+    if rule == "quantity":
+        return (*values, *(f"shacl-{word.name}-{slot.name}" for word, slot in slots))
+    return values if rule == "type-conflict" else ()
 
 
 def _is_reported(shape: Diagnostic, spans: list[Span]) -> bool:

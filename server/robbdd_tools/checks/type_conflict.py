@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.finding import article, finding, related_to
-from robbdd_tools.checks.replacements import other_values, other_variables, variables_with_kinds
+from robbdd_tools.checks.replacements import other_values, other_variables, variables_with_kinds, with_units
 from robbdd_tools.checks.template_variants import Column, Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of
 from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key, written_elements
-from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of
+from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of, dimension_of_phrase
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -107,7 +107,9 @@ def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[
             f"in '{other[1].phrase}': give it {article(wanted)}"
         )
         related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
-        fixes = tuple(other_values(scenario, column, node, kinds, {element.name for _, element in values}))
+        dimension = dimension_of_phrase(other[1].phrase)
+        units = with_units(scenario.site, node, dimension) if dimension and element.kind == "number" else ()
+        fixes = (*units, *other_values(scenario, column, node, kinds, {element.name for _, element in values}))
         yield finding(scenario.site, node, Severity.ERROR, CODE, message, related, fixes)
         if len(reported) == 1:
             words = f"scenario '{scenario.variant.name.text}' gives it {article(element.kind)}"

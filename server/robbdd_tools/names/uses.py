@@ -159,6 +159,13 @@ def slot_kinds(word: str) -> Mapping[str, Kinds]:
 
 
 @cache
+def dimension_of_phrase(phrase: str) -> str:
+    """Return the dimension of the quantity in a predicate's phrase; empty if it has none."""
+    words = (word for word in load_catalog().predicates.values() if word.phrase == phrase)
+    return next((slot.dimension for word in words for slot in word.slots if slot.dimension), "")
+
+
+@cache
 def phrase_words(word: str) -> str:
     """Return the phrase of a catalog word."""
     catalog = load_catalog()

@@ -36,6 +36,16 @@ class Roles:
         self.kinds.setdefault(variable, {}).update(dict.fromkeys(kinds))
 
 
+def assignment_class(kind: str) -> str:
+    """Return the class (CURIE) of the derived assignments of values to variables of one kind."""
+    return f"rbw:{kind.title().replace(' ', '')}Assignment"
+
+
+def value_shape(dimension: str) -> str:
+    """Return the name of the shape of values that are quantities of one dimension."""
+    return f"{dimension.replace(' ', '-')}-value"
+
+
 def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
     """Yield all clauses of some owners once, including those inside groups and quantifiers. Outer clauses are first.
 
@@ -73,9 +83,9 @@ def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
     for clause in clauses:
         for word in words_of(records, clause):
             for slot in word.slots:
-                if slot.kind in ELEMENT_OF_KIND:
+                if slot.kind in ELEMENT_OF_KIND or slot.dimension:
                     for variable in records.iris(records.all(clause, slot.property)):
-                        roles.add(variable, [ELEMENT_OF_KIND[slot.kind]])
+                        roles.add(variable, [slot.dimension or ELEMENT_OF_KIND[slot.kind]])
         for variable in records.iris(records.all(clause, HORIZON_VARIABLE)):
             roles.add(variable, [HORIZON])
         if records.all(clause, "bdd:in-set"):

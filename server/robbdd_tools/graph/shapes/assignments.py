@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Records, elements_of, items_of
 from robbdd_tools.graph.rdf.vocabulary import SELECTIONS, expand
-from robbdd_tools.graph.read.variable_roles import Roles, clauses_below, roles_in
+from robbdd_tools.graph.read.variable_roles import Roles, assignment_class, clauses_below, roles_in
 from robbdd_tools.graph.shapes.derived import Derived
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def add_assignments(derived: Derived, variant: Iri) -> None:
     for variable in dict.fromkeys([*declared, *assigned]):
         kinds = roles.kinds.get(variable, {})
         shape = "rbw:SetAssignment" if records.is_a(variable, "bdd:Set") else "rbw:PlainAssignment"
-        node = derived.new_node(["rbw:Assignment", shape, *map(_kind_class, kinds)])
+        node = derived.new_node(["rbw:Assignment", shape, *map(assignment_class, kinds)])
         derived.add(node, "rbw:variable", variable)
         derived.add(node, "rbw:times", assigned.count(variable))
         derived.add(node, "rbw:declared", variable in declared or not is_told)
@@ -60,16 +60,12 @@ def add_quantified(derived: Derived, quantifier: Iri, roles: Roles) -> None:
     for set_ in records.iris(records.all(quantifier, "bdd:in-set")):
         if not records.is_a(set_, "bdd:ConstantSet"):
             continue
-        node = derived.new_node(_kind_class(kind) for kind in roles.kinds.get(set_, {}))
+        node = derived.new_node(assignment_class(kind) for kind in roles.kinds.get(set_, {}))
         derived.anchor(node, "", (quantifier, expand("bdd:in-set")))
         for variable in records.iris(records.all(quantifier, "bdd:ref-variable")):
             derived.add(node, "rbw:variable", variable)
         for value in elements_of(records, set_):
             derived.add(node, "rbw:value", value)
-
-
-def _kind_class(kind: str) -> str:
-    return f"rbw:{kind.capitalize()}Assignment"
 
 
 def _declared(records: Records, template: Iri, roles: Roles) -> tuple[Iri, ...]:

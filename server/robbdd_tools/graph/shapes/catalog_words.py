@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.quantity_units import units_of, with_unit
 from robbdd_tools.catalog.api import Behaviour, Kind, Predicate, Slot
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import SHAPES, SOME_TIME, expand
+from robbdd_tools.graph.rdf.vocabulary import QUANTITY, SHAPES, SOME_TIME, expand
+from robbdd_tools.graph.read.variable_roles import assignment_class, value_shape
 from robbdd_tools.graph.shapes.derived import use_of
 
 if TYPE_CHECKING:
     from rdflib import Graph
+    from rdflib.term import Node
 
 _CLASSES = {
     Kind.OBJECT: "rbw:ObjectTerm",
@@ -27,18 +30,22 @@ _FIX = {
     Kind.OBJECT_SET: "name a 'set var' or an 'obj set'",
     Kind.WORKSPACE_SET: "name a 'set var' or a 'ws set'",
     Kind.NAME: "write a name without angle brackets",
-    Kind.QUANTITY: "write a number with a unit, or name a variable",
 }
+_NUMBER = r"^[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?"
 
 
 def add_word_shapes(shapes: Graph) -> None:
     """Add a shape for each slot of each predicate and behaviour of the catalog."""
     catalog = load_catalog()
+    dimensions: dict[str, None] = {}
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
         for slot in word.slots:
             _add_slot_shape(shapes, word, slot)
+            dimensions |= dict.fromkeys([slot.dimension] if slot.dimension else [])
         if isinstance(word, Predicate) and word.duration is not None:
             _add_interval_shapes(shapes, word)
+    for dimension in dimensions:
+        _add_value_shape(shapes, dimension)
 
 
 def _add_interval_shapes(shapes: Graph, word: Predicate) -> None:
@@ -70,8 +77,34 @@ def _add_interval_shapes(shapes: Graph, word: Predicate) -> None:
         shapes.add((shape, SH.message, message))
 
 
-def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> None:
+def _add_value_shape(shapes: Graph, dimension: str) -> None:
+    """Add the shape of the values of variables that stand for quantities of one dimension."""
     from rdflib import Literal, URIRef
+    from rdflib.namespace import RDF, SH
+
+    shape = URIRef(SHAPES + value_shape(dimension))
+    shapes.add((shape, RDF.type, SH.PropertyShape))
+    shapes.add((shape, SH.targetClass, URIRef(expand(assignment_class(dimension)))))
+    shapes.add((shape, SH.path, URIRef(expand("rbw:value"))))
+    _add_dimension(shapes, shape, dimension)
+    shapes.add((shape, SH.severity, SH.Violation))
+    message = f"'{{value}}' does not fit '{{variable}}', which is a {dimension} in the clauses: {with_unit(dimension)}"
+    shapes.add((shape, SH.message, Literal(message)))
+
+
+def _add_dimension(shapes: Graph, node: Node, dimension: str) -> None:
+    """Require a literal that is a quantity of one dimension."""
+    from rdflib import Literal, URIRef
+    from rdflib.namespace import SH
+
+    units = "|".join(map(re.escape, units_of(dimension)))
+    shapes.add((node, SH.datatype, URIRef(QUANTITY)))
+    shapes.add((node, SH.pattern, Literal(rf"{_NUMBER}\s*({units})$")))
+
+
+def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> None:
+    from rdflib import BNode, Literal, URIRef
+    from rdflib.collection import Collection
     from rdflib.namespace import RDF, SH
 
     node, shape = (URIRef(f"{SHAPES}{name}") for name in (word.name, f"{word.name}-{slot.name}"))
@@ -85,10 +118,15 @@ def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> N
     if slot.kind is Kind.NAME:
         shapes.add((shape, SH.nodeKind, SH.Literal))
     elif slot.kind is Kind.QUANTITY:
-        shapes.add((shape, SH.nodeKind, SH.IRIOrLiteral))
+        variable, quantity = BNode(), BNode()
+        shapes.add((variable, SH.nodeKind, SH.IRI))
+        _add_dimension(shapes, quantity, slot.dimension)
+        shapes.add((shape, SH["or"], Collection(shapes, BNode(), [variable, quantity]).uri))
     else:
         shapes.add((shape, SH["class"], URIRef(expand(_CLASSES[slot.kind]))))
     shapes.add((shape, SH.severity, SH.Violation))
+    takes = slot.dimension or str(slot.kind)
     fix = _FIX.get(slot.kind, f"name a variable or one {slot.kind}")
-    message = f"'{{value}}' cannot stand for '{slot.name}' in '{word.phrase}', which takes one {slot.kind}: {fix}"
+    fix = f"{with_unit(slot.dimension)}, or name a variable" if slot.dimension else fix
+    message = f"'{{value}}' cannot stand for '{slot.name}' in '{word.phrase}', which takes one {takes}: {fix}"
     shapes.add((shape, SH.message, Literal(message)))
