@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import shutil
 import signal
 import sys
 from pathlib import Path
@@ -13,9 +14,14 @@ import pytest
 from lsprotocol import types
 
 import robbdd_tools as robbdd
+from kit import EXAMPLES
 from lsp_kit import PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
+from robbdd_tools.lsp.framing import Edited
+from robbdd_tools.lsp.rejudge_worker import Worker
+from robbdd_tools.lsp.worker import Inbox
+from robbdd_tools.workbench.stored import store_at
 
 pytestmark = pytest.mark.physics
 GOAL = "<thing> is located at <goal>, after <evt-place-end>"
@@ -184,3 +190,23 @@ def processes(server: int) -> list[int]:
             if parent == server and any("rejudge_worker" in word for word in words):
                 found.append(int(entry.name))
     return found
+
+
+def test_the_process_keeps_nothing_of_runs_that_are_no_longer_shown(tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
+    model = tmp_path / "pickplace" / "pickplace.bdd"
+    for _ in range(2):
+        assert main(["run", str(model), "--first", "1"]) == 0
+    uri, store = path_to_uri(model), str(store_at(model, None).folder)
+    (tmp_path / "judge").mkdir()
+    reading, writing = os.pipe()
+    with os.fdopen(writing, "wb"):
+        worker = Worker(Inbox(os.fdopen(reading, "rb")), tmp_path / "judge")
+        kept: list[set[str]] = []
+        for shown in ({1: (0,), 2: (0,)}, {2: (0,)}):
+            answers = list(worker.answers(Edited(1, uri, {uri: (1, model.read_text("utf-8"))}, store, shown)))
+            assert [answer.problem for answer in answers] == [""]
+            kept.append({path.parent.name for path in (*worker.manifests, *(run / "_" for run in worker.loaded))})
+        assert worker.judge is not None
+        worker.judge.end()
+    assert kept == [{"1", "2"}, {"2"}]

@@ -11,7 +11,7 @@ import logging
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -92,6 +92,7 @@ class Worker:
             for one in executions
             if one.spec is None
         }
+        self._forget_runs(Path(edited.store), {place.folder for place, _ in concerned})
         done, total = 0, len(unusable) + sum(one.spec is not None for _, every in concerned for one in every)
         waiting, digests = unusable, digests_of(snapshot, edited.uri)
         for place, executions in concerned:
@@ -150,6 +151,13 @@ class Worker:
                 part = indices[start : start + STEP]
                 self._verdicts(JudgeOrder(spec, {}, tuple(_trace(place, index) for index in part)))
             self.loaded.add(place.folder)
+
+    def _forget_runs(self, store: Path, used: Container[Path]) -> None:
+        """Drop what is known of the runs of a store that are no longer shown."""
+        for folder in [path.parent for path in self.manifests if path.parent.parent == store]:
+            if folder not in used:
+                del self.manifests[folder / MANIFEST]
+                self.loaded.discard(folder)
 
     def _manifest(self, place: StoredRun) -> Manifest:
         """Return the manifest of a run. Raises ``NoSuchRun``."""
