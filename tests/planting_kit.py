@@ -63,6 +63,10 @@ class HostileFolder:
         package.mkdir()
         self._module(package / "__init__.py", "robbdd_tools")
         self._module(place / "planted_word.py", "planted_word")
+        # Where Python would look if its variables named this folder.
+        user_site = place / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
+        user_site.mkdir(parents=True)
+        (user_site / "planted.pth").write_text(f"import sys; open({str(self._log)!r}, 'a').write('pth\\n')\n")
         metadata = place / "planted_word-1.0.dist-info"
         metadata.mkdir()
         (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: planted-word\nVersion: 1.0\n")

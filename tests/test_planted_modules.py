@@ -17,7 +17,9 @@ from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 from kit import command_names
 from lsp_kit import ASKED, PATIENCE
 from planting_kit import HostileFolder, importable_names
+from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.isolation import EXPOSED
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 COMMANDS = (
@@ -60,7 +62,10 @@ def _ignore(*_: object) -> None:
 
 def environment(python_path: str | None) -> dict[str, str]:
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "ROBBDD_"))}
-    return kept if python_path is None else {**kept, "PYTHONPATH": python_path}
+    if python_path is None:
+        return kept
+    relative = dict.fromkeys(("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX"), ".")
+    return {**kept, **relative, "PYTHONPATH": python_path}
 
 
 def test_the_trap_works(tmp_path: Path) -> None:
@@ -94,6 +99,26 @@ def test_no_command_imports_a_planted_module(inside: bool, python_path: str | No
         assert hostile.imported() == [], command
         assert done.returncode in (0, FINDINGS), (command, done.stderr)
         assert "Traceback" not in done.stderr, (command, done.stderr)
+
+
+@pytest.mark.parametrize("module", ["robbdd_tools", "robbdd_tools.lsp"])
+def test_an_interpreter_that_reads_no_environment_imports_no_planted_module(module: str, tmp_path: Path) -> None:
+    hostile = HostileFolder(tmp_path)
+    command = [sys.executable, "-I", "-m", module, "--version"]
+    done = subprocess.run(
+        command, cwd=hostile.models, env={**environment(None), "PYTHONPATH": os.pathsep}, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout.split()[-1:], done.stderr) == (0, [__version__], "")
+    assert hostile.imported() == []
+
+
+def test_a_command_that_python_has_started_in_the_working_directory_says_so(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-m", "robbdd_tools", "--version"]
+    for python_path, warned in ((os.pathsep, EXPOSED), (f"{tmp_path}{os.pathsep}x", EXPOSED), (str(tmp_path), "")):
+        done = subprocess.run(
+            command, cwd=tmp_path, env={**environment(None), "PYTHONPATH": python_path}, capture_output=True, text=True
+        )
+        assert (done.returncode, done.stderr) == (0, warned)
 
 
 @pytest.mark.physics

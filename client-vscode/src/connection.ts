@@ -3,7 +3,7 @@ import { createInterface } from "node:readline";
 import type { Readable } from "node:stream";
 import * as vscode from "vscode";
 import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "vscode-languageclient/node";
-import type { Launch } from "./launch";
+import { type Launch, serverVariables } from "./launch";
 import { RestartBudget } from "./restarts";
 import { VerdictPainter } from "./verdicts/painter";
 
@@ -46,7 +46,7 @@ export function createClient(
   const client = new DiscreetClient(
     "robbdd",
     "RobBDD",
-    { command, args: [...args], transport: TransportKind.stdio, options: { cwd, env } },
+    { command, args: [...args], transport: TransportKind.stdio, options: { cwd, env: serverVariables(process.env, env) } },
     {
       documentSelector: languages.map((language) => ({ scheme: "file", language })),
       outputChannel: log,

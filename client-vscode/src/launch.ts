@@ -21,3 +21,28 @@ export function launchOf(args: unknown, env: unknown): Launch {
     env: Object.fromEntries(variables.filter((entry): entry is [string, string] => typeof entry[1] === "string")),
   };
 }
+
+/** Python reads these before the server's first line: their relative folders may be those of the workspace. */
+const READ_BY_PYTHON = new Set(["PYTHONPATH", "PYTHONINSPECT", "PYTHONSTARTUP"]);
+
+/**
+ * Return the variables to change in the server's environment: those of the settings, and those that Python must not see.
+ * The server's agents search `ROBBDD_PYTHONPATH` last, so sourced ROS workspaces work.
+ */
+export function serverVariables(
+  inherited: Readonly<Record<string, string | undefined>>,
+  stated: Launch["env"],
+): Record<string, string | undefined> {
+  const changed: Record<string, string | undefined> = { ...stated };
+  for (const [name, value] of Object.entries({ ...inherited, ...stated })) {
+    // Windows ignores the case of names.
+    const key = name.toUpperCase();
+    if (READ_BY_PYTHON.has(key)) {
+      changed[name] = undefined;
+    }
+    if (key === "PYTHONPATH" && value !== undefined && value !== "") {
+      changed["ROBBDD_PYTHONPATH"] = value;
+    }
+  }
+  return changed;
+}

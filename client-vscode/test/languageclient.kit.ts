@@ -10,7 +10,7 @@ export const TransportKind = { stdio: 0 };
 interface ServerOptions {
   readonly command: string;
   readonly args: readonly string[];
-  readonly options: { readonly cwd: string; readonly env: Readonly<Record<string, string>> };
+  readonly options: { readonly cwd: string; readonly env: Readonly<Record<string, string | undefined>> };
 }
 
 interface ClientOptions {

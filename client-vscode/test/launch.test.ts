@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { delimiter, dirname } from "node:path";
 import { test } from "node:test";
-import { launchOf } from "../src/launch";
+import { launchOf, serverVariables } from "../src/launch";
 import { fits } from "../src/versions";
 import { LanguageClient } from "./languageclient.kit";
 import { editor } from "./vscode.kit";
@@ -21,6 +21,25 @@ test("arguments and variables of the settings reach the server, and entries of o
   const { args, options } = client().server;
   assert.deepEqual([args, options.env], [["--log-file", "x.log"], { ROS_DOMAIN_ID: "7" }]);
   assert.deepEqual(launchOf(undefined, null), { args: [], env: {} });
+});
+
+test("Python reads no module path of the environment before the server's first line", () => {
+  const inherited = { PYTHONPATH: ":/opt/ros", PythonInspect: "1", PYTHONSTARTUP: "x.py", PATH: "/bin", PYTHONHASHSEED: "0" };
+  const hidden = { PYTHONPATH: undefined, PythonInspect: undefined, PYTHONSTARTUP: undefined };
+  assert.deepEqual(serverVariables(inherited, { A: "1" }), { ...hidden, A: "1", ROBBDD_PYTHONPATH: ":/opt/ros" });
+  assert.deepEqual(serverVariables({ PYTHONPATH: "a" }, { PYTHONPATH: "b" }), { PYTHONPATH: undefined, ROBBDD_PYTHONPATH: "b" });
+  assert.deepEqual(serverVariables({}, {}), {});
+});
+
+test("the server is started without a module path", async () => {
+  process.env["PYTHONPATH"] = ":";
+  try {
+    await start(undefined);
+    const { env } = client().server.options;
+    assert.deepEqual([env["PYTHONPATH"], "PYTHONPATH" in env, env["ROBBDD_PYTHONPATH"]], [undefined, true, ":"]);
+  } finally {
+    delete process.env["PYTHONPATH"];
+  }
 });
 
 test("new terminals find the command line of the server in use, behind what is on PATH", async () => {

@@ -12,6 +12,10 @@ INHERITED = "ROBBDD_PYTHONPATH"
 """Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
 NO_USER_CODE = "ROBBDD_NO_USER_CODE"
 """Environment variable: if set, none of our processes imports users' code."""
+EXPOSED = (
+    "warning: PYTHONPATH has an empty or relative entry, so Python searched the working directory before RobBDD began: "
+    "remove this entry, or use python -I -m robbdd_tools\n"
+)
 UNTRUSTED = "untrusted"
 """Value of ``NO_USER_CODE`` if the workspace is not trusted (rather than ``--no-user-code`` given)."""
 
@@ -20,7 +24,7 @@ def isolate() -> None:
     """Remove the working directory, the script's folder and the folders of ``PYTHONPATH`` from ``sys.path``.
 
     A folder of ``PYTHONPATH`` that contains this package is moved to the end instead, because an installation by ``pip
-    install --target`` has its libraries there.
+    install --target`` has its libraries there. If Python has searched the working directory, a warning is printed.
     """
     stated = os.environ.pop(SEARCHED, None)
     if stated is not None:
@@ -34,6 +38,8 @@ def isolate() -> None:
     sys.path[:] = [entry for entry in sys.path if entry not in removed]
     if package in added:
         sys.path.append(package)
+    if stated and not sys.flags.ignore_environment and not all(map(os.path.isabs, added)):
+        sys.stderr.write(EXPOSED)
 
 
 def _installed() -> set[str]:
