@@ -76,6 +76,7 @@ const predicates = phrases(
   "it takes less than",
   "is at rest",
   "is entirely inside",
+  "is on top of",
   "touches",
   "does not touch",
   "presses",

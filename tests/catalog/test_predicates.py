@@ -482,3 +482,52 @@ def test_forces_that_were_not_recorded_are_unknown(predicate: str) -> None:
     assert judged(predicate, touching(0.0), one="tray_ws", other="tray").outcome is Outcome.UNKNOWN
     # One of the two trays was watched by nobody.
     assert judged(predicate, touching(0.0, ("tray",)), one="both_ws", other="ball").outcome is Outcome.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("place", "force", "margin"),
+    [
+        ((0.0, 0.0, 0.15), 1.0, 0.1),
+        ((0.0, 0.06, 0.15), 1.0, 0.04),
+        ((0.0, 0.1, 0.15), 1.0, 0.0),
+        ((0.0, 0.11, 0.15), 1.0, -0.01),  # it leans over the edge
+        ((0.18, 0.0, 0.15), 1.0, 0.02),
+        ((0.0, 0.0, 0.0), 1.0, -0.05),  # it is inside, or hangs through
+        ((0.0, 0.11, 0.0), 1.0, -0.05),  # it touches the side
+        ((0.0, 0.0, 0.15), 0.0, -0.05),  # it hovers
+        ((0.0, 0.0, 0.1), 0.0, -0.0001),  # it is let go of without contact
+    ],
+)
+def test_on_top_needs_contact_and_the_centre_above(
+    place: tuple[float, float, float], force: float, margin: float
+) -> None:
+    slab = tuple(((x, y, z), 0.0) for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (0.0, 0.05))
+    trace = replace(
+        world(ball=still(2, place)),
+        outlines={**SMALL_BALL, "tray": slab},
+        touches={("ball", "tray"): np.full(2, force)},
+        touch_watched=("ball", "tray"),
+    )
+    found = judged("is-on-top-of", trace, one="ball", other="tray")
+    assert found.robustness == pytest.approx(margin, abs=1e-9)
+
+
+def test_on_top_is_unknown_without_forces_or_outlines() -> None:
+    trace = replace(world(ball=still(2, (0.0, 0.0, 0.15))), outlines={**SMALL_BALL, "tray": SMALL_BALL["ball"]})
+    assert judged("is-on-top-of", trace, one="ball", other="tray").outcome is Outcome.UNKNOWN
+    felt = replace(trace, touch_watched=("ball",), outlines=SMALL_BALL)
+    assert judged("is-on-top-of", felt, one="ball", other="tray").outcome is Outcome.UNKNOWN
+
+
+def test_the_footprint_turns_with_the_object() -> None:
+    bar = tuple(((x, y, z), 0.0) for x in (-0.2, 0.2) for y in (-0.02, 0.02) for z in (-0.05, 0.05))
+    trace = replace(
+        world(ball=still(2, (0.0, 0.1, 0.1))),
+        outlines={**SMALL_BALL, "tray": bar},
+        touches={("ball", "tray"): np.ones(2)},
+    )
+    assert judged("is-on-top-of", trace, one="ball", other="tray").robustness == pytest.approx(-0.08)
+    orientations = trace.orientations.copy()
+    orientations[:, trace.column("tray")] = (np.cos(np.pi / 4), 0.0, 0.0, np.sin(np.pi / 4))
+    turned = replace(trace, orientations=orientations)
+    assert judged("is-on-top-of", turned, one="ball", other="tray").robustness == pytest.approx(0.02)

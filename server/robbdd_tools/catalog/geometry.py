@@ -83,6 +83,18 @@ def farthest_point(evidence: Evidence, name: str) -> float:
     return max(hypot(*center) + radius for center, radius in whole(evidence, name))
 
 
+def outline_in_world(evidence: Evidence, name: str) -> tuple[FloatArray, FloatArray]:
+    """Return the balls of an object's outline: centres in the world (k, n, 3) and radii (k,), m.
+
+    Raises ``KeyError`` like ``whole``.
+    """
+    import numpy as np
+
+    position, orientation, balls = evidence.position(name), evidence.orientation(name), whole(evidence, name)
+    centers = np.array([out_of_frame(center, position, orientation) for center, _ in balls])
+    return centers, np.array([radius for _, radius in balls])
+
+
 def whole(evidence: Evidence, name: str) -> Outline:
     """Return the outline of an object. Raises ``KeyError`` if it is unknown: its position is not enough."""
     outline = evidence.outline(name)

@@ -1,0 +1,52 @@
+"""An object lies directly on another one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.contacts import FAINTEST, TOUCH, contact_force
+from robbdd_tools.catalog.geometry import outline_in_world
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+DIRECTIONS = 180
+"""Horizontal directions in which the footprint is measured; it is too large by at most 0.02 % of its size."""
+APART = 1e-4
+"""Least distance (m) that counts for objects that do not touch."""
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Return how far (m) the centre of ``one`` is above the top and within the footprint of ``other``, shape (n,).
+
+    The smaller of both counts. Where the two do not touch, the margin is at most the negative gap between them.
+    """
+    import numpy as np
+
+    one, other = str(arguments["one"]), str(arguments["other"])
+    center = evidence.position(one)
+    points, radii = outline_in_world(evidence, other)
+    angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
+    directions = np.array([np.cos(angles), np.sin(angles)])
+    reach = np.max(points[:, :, :2] @ directions + radii[:, None, None], axis=0)
+    footprint = np.min(reach - center[:, :2] @ directions, axis=1)
+    top = np.max(points[:, :, 2] + radii[:, None], axis=0)
+    own, own_radii = outline_in_world(evidence, one)
+    gap = np.abs(np.min(own[:, :, 2] - own_radii[:, None], axis=0) - top)
+    placed = np.minimum(footprint, center[:, 2] - top)
+    touching = contact_force(evidence, arguments) >= FAINTEST
+    return np.where(touching, placed, np.minimum(placed, -np.maximum(gap, APART)))
+
+
+IS_ON_TOP_OF = Predicate(
+    name="is-on-top-of",
+    phrase="<one> is on top of <other>",
+    rdf_type="rbw:IsOnTopOfPredicate",
+    slots=(Slot("one", Kind.OBJECT, "rbw:ref-one"), Slot("other", Kind.OBJECT, "rbw:ref-other")),
+    sentence='"{one}" is on top of "{other}"',
+    unit="m",
+    doc="The object touches the other one, and its centre is above the other one's top and within its footprint.",
+    evaluate=margin,
+    quantities=(TOUCH,),
+)
