@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby, islice
 from pathlib import Path
 
 import pytest
 
 from kit import Fixture
 from report_kit import OF_CATALOG, check_report, heading, reported
-from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.checks import DECLARATION_RULES, FILE_RULES
 from robbdd_tools.checks.graph_files import graph_findings
 from robbdd_tools.graph.write.build import build_graph
 
+MOST_AT_A_PLACE = 2
+"""Findings at one place that are shown: there may be one for each element of a set of similar ones."""
 REPORTS = sorted((Path(__file__).parent / "reports").glob("*.txt"))
 ON_DISK = {"python-source"}
 """Rules that read files beside the model; ``test_executions.py`` writes these."""
@@ -22,19 +24,15 @@ ON_DISK = {"python-source"}
 def text_and_graph(case: Fixture) -> Iterator[str]:
     """Yield the report on a fixture, then the findings on the graph of its first file.
 
-    Of findings with the same code and place, such as those on similar elements, only the first is reported. Elements
-    without a model have no message there: ``test_graph_files.py`` checks it.
+    Elements without a model have no message there: ``test_graph_files.py`` checks it.
     """
     yield from reported(case)
-    found: dict[str, Diagnostic] = {}
-    for entry in graph_findings(build_graph(case.snapshot, case.uri)):
-        found.setdefault(heading(case, entry), entry)
-    if found:
-        yield "//== reported of the graph"
-    for line, entry in found.items():
+    found = groupby(graph_findings(build_graph(case.snapshot, case.uri)), lambda entry: heading(case, entry))
+    for position, (line, entries) in enumerate(found):
+        if position == 0:
+            yield "//== reported of the graph"
         yield line
-        if entry.code not in OF_CATALOG:
-            yield f"  {entry.message}"
+        yield from (f"  {entry.message}" for entry in islice(entries, MOST_AT_A_PLACE) if entry.code not in OF_CATALOG)
 
 
 @pytest.mark.parametrize("path", REPORTS, ids=lambda path: path.stem)

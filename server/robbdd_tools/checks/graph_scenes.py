@@ -126,10 +126,10 @@ def _used(site: GraphSite, variant: Variant) -> set[Iri]:
 
 
 def _is_carried(variant: Variant, workspace: Iri, seen: frozenset[Iri]) -> bool:
+    if workspace in seen:
+        return False
     inner = variant.scene.contains.get(workspace, ())
-    if variant.scene.carriers.get(workspace) or workspace in seen:
-        return workspace not in seen
-    return any(_is_carried(variant, one, seen | {workspace}) for one in inner)
+    return workspace in variant.scene.carriers or any(_is_carried(variant, one, seen | {workspace}) for one in inner)
 
 
 def _fits(site: GraphSite, element: Iri) -> bool:

@@ -51,35 +51,50 @@ def not_carried(scene: str, workspace: str) -> str:
 
 
 def _carried(scene: Site | None) -> frozenset[Key] | None:
-    """Return the workspaces that objects of a scene carry; ``None`` if they are not completely known."""
+    """Return the workspaces that objects of a scene carry; ``None`` if they are not completely known.
+
+    A workspace is carried, too, if one inside it is.
+    """
     root = None if scene is None else scene.tree
     if scene is None or not isinstance(root, tree.Scene) or not scene.whole(root):
         return None
-    found: set[Key] = set()
+    carried: set[Key] = set()
+    around: dict[Key, set[Key]] = {}
     for entry in root.entries:
         if entry.reference.role == "Composition":
-            inner = _composed(scene.follow(entry.reference), frozenset())
-            if inner is None:
+            workspace = _compose(scene.follow(entry.reference), frozenset(), carried, around)
+            if workspace is None:
                 return None
-            found |= inner
-    return frozenset(found)
+    waiting = list(carried)
+    while waiting:
+        outer = around.get(waiting.pop(), set()) - carried
+        carried |= outer
+        waiting += outer
+    return frozenset(carried)
 
 
-def _composed(site: Site | None, above: frozenset[Key]) -> set[Key] | None:
-    """Return the carried workspaces of a composition and of the compositions nested in it."""
+def _compose(site: Site | None, above: frozenset[Key], carried: set[Key], around: dict[Key, set[Key]]) -> Key | None:
+    """Add the workspaces of a composition and of those nested in it: the ``carried`` ones, and those ``around`` each.
+
+    Returns:
+        The workspace of the composition; ``None`` if it or a nested one is not completely known.
+    """
     root = None if site is None else site.tree
     if site is None or not isinstance(root, tree.Composition) or not site.whole(root):
         return None
     own = element_of(site, root.workspace)
     if own is None or own.key in above:
         return None
-    found: set[Key] = set()
     for entry in root.entries:
-        if entry.reference.role != "Composition":
-            found.add(own.key)
+        if entry.reference.role == "Object":
+            carried.add(own.key)
             continue
-        inner = _composed(site.follow(entry.reference), above | {own.key})
+        if entry.reference.role == "Composition":
+            inner = _compose(site.follow(entry.reference), above | {own.key}, carried, around)
+        else:
+            inside = element_of(site, entry.reference)
+            inner = None if inside is None else inside.key
         if inner is None:
             return None
-        found |= inner
-    return found | {own.key} if found else found
+        around.setdefault(inner, set()).add(own.key)
+    return own.key
