@@ -109,15 +109,18 @@ def _template(
 
 
 def _variable(site: Site, template: tree.Template, name: str, words: str) -> Iterator[Fix]:
-    before = [*template.variables, *(part for part in (template.task, template.duration) if part is not None)]
-    if not before:
-        return
-    last = max(before[: len(template.variables)] or before, key=lambda node: node.span)
-    document = site.file.document
-    end = site.span(last).end
-    if isinstance(last, tree.Ref):
-        end = document.text.index(">", end) + 1
-    end = line_end(document, end)
+    text = site.file.document.text
+    parts = [*template.variables, *(part for part in (template.task, template.duration) if part is not None)]
+    # The published form states the duration inside the body.
+    before = [part for part in parts if part.span.start < template.body.span.start]
+    if before:
+        last = max(before[: len(template.variables)] or before, key=lambda node: node.span)
+        end = site.span(last).end
+        if isinstance(last, tree.Ref):
+            end = text.index(">", end) + 1
+    else:
+        end = text.index("{", site.span(template.name).end) + 1
+    end = line_end(site.file.document, end)
     edit = Edit(site.uri, Span(end, end), f"\n    {words} {name}")
     yield Fix(f"Declare '{words} {name}' in '{template.name.text}'", (edit,))
 

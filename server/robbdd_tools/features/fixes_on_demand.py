@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.checks.finding import MAX_OFFERED, change, removal
 from robbdd_tools.checks.table_edits import column_removed
 from robbdd_tools.checks.template_variants import Scenario, scenarios
@@ -121,7 +121,8 @@ def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
 def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
     """Yield a fix that removes a variable together with its values in the scenarios of its file."""
     found = next((one for one in file.definitions.values() if one.span == diagnostic.span), None)
-    if found is None or diagnostic.fixes or found.symbol.path.count(".") != 1:
+    # The severity is lower for variables without values and for those of quantifiers.
+    if found is None or diagnostic.severity is not Severity.WARNING:
         return
     edits = [*removal(file.document, "", found.extent).edits]
     for placed in file.declarations:
