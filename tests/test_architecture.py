@@ -52,6 +52,7 @@ HOMES = {
     "mujoco": {"world"},
     "mcap": {"traces", "logs"},
     "rosbags": {"logs"},
+    "debugpy": {"agent"},
     "sqlite3": {"run"},
     "py_trees": {"agent"},
     "pygls": {"lsp"},

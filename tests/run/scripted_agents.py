@@ -51,8 +51,8 @@ class Stage:
     def monotonic(self) -> float:
         return self.now
 
-    def agent(self, folder: Path, number: int, *, log_limit: int, timeout: float) -> ScriptedAgent:
-        self.agents.append(ScriptedAgent(self, folder, number, log_limit, timeout))
+    def agent(self, folder: Path, number: int, *, log_limit: int, timeout: float, debug: int | None) -> ScriptedAgent:
+        self.agents.append(ScriptedAgent(self, folder, number, log_limit, timeout, debug))
         return self.agents[-1]
 
     def gate(self, name: str) -> threading.Event:
@@ -84,6 +84,7 @@ class ScriptedAgent:
     number: int
     log_limit: int
     timeout: float
+    debug: int | None
     orders: SimpleQueue[int | None] = field(default_factory=SimpleQueue[int | None])
     executed: list[int] = field(default_factory=list[int])
     ended: threading.Event = field(default_factory=threading.Event)

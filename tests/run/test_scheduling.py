@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -18,6 +20,9 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
 )
 from robbdd_tools.run.agent_log import LIMIT
+from robbdd_tools.run.agent_worker import AgentWorker
+from robbdd_tools.run.debugging import debugged
+from robbdd_tools.run.launch import Agent
 from robbdd_tools.run.scheduler import TIMEOUT, Policy
 from run.scripted_agents import (
     FAULT,
@@ -55,6 +60,17 @@ def test_only_the_chosen_scenarios_are_executed_by_agents_with_the_next_numbers(
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(5), policy, indices=[1, 3], first_agent=7)
     assert told(scheduler) == [*whole(1, 3), "complete"]
     assert [(agent.number, agent.log_limit) for agent in stage.agents] == [(7, 77)]
+
+
+def test_a_debugged_process_has_no_time_limit_while_it_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = Stage({})
+    scheduler = scheduler_of(monkeypatch, stage, manifest_of(2), debugged(Policy(8), 5678))
+    assert told(scheduler) == [*whole(0, 1), "complete"]
+    assert [(agent.debug, agent.timeout) for agent in stage.agents] == [(5678, 0.0)]
+    limited, waiting = (AgentWorker(cast(Agent, stage.agents[0]), debugged=flag) for flag in (False, True))
+    for worker in (limited, waiting):
+        worker.assign([0])
+    assert limited.deadline < waiting.deadline == inf
 
 
 def test_no_more_processes_begin_than_there_is_work(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent import hooks, stack_dumps
 from robbdd_tools.agent.channel import Channel, Reports, use_channel
+from robbdd_tools.agent.debugger import await_debugger
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.session import UNKNOWN_SCENARIO
@@ -54,8 +55,9 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
         channel.send(RunFinished(False))
         return 2
     channel.send(RunStarted(len(manifest.scenarios), version()))
+    debugged = await_debugger(channel)
     with redirect_stdout(Printed(channel, sys.stdout)):
-        problem = _behave(Features(folder, manifest, channel), orders)
+        problem = _behave(Features(folder, manifest, channel), orders, debugged=debugged)
         finish_output()
     if problem:
         channel.send(LogLine("error", problem))
@@ -63,8 +65,11 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
     return 1 if problem else 0
 
 
-def _behave(features: Features, orders: Iterable[str]) -> str:
-    """Execute the ordered scenarios with behave. Return the reason why behave could not work; empty if it could."""
+def _behave(features: Features, orders: Iterable[str], *, debugged: bool) -> str:
+    """Execute the ordered scenarios with behave. Return the reason why behave could not work; empty if it could.
+
+    If the process is ``debugged``, users' steps have the names of the files that users edit.
+    """
     configuration: Any = import_module("behave.configuration").Configuration
     behave: Any = import_module("behave.runner")
     config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
@@ -78,7 +83,7 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
         runner.context = behave.Context(runner)
         runner.hooks.update((name, getattr(hooks, name)) for name in hooks.__all__)
         try:
-            load_steps(features.own_steps())
+            load_steps(features.own_steps(), features.originals() if debugged else {})
         except (Exception, SystemExit) as error:
             return features.report_broken_steps(error)
         stack_dumps.rest()
@@ -108,6 +113,10 @@ class Features:
             search(folder_of(model))
         return found
 
+    def originals(self) -> dict[str, str]:
+        """Map the absolute paths of the copied files of steps to the files that the user edits."""
+        return sources_in(self.folder, self._manifest.sources)
+
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
         """Yield one feature for each order. The feature contains only the ordered scenario.
 
@@ -135,7 +144,7 @@ class Features:
 
     def report_broken_steps(self, error: BaseException) -> str:
         """Report that the users' steps cannot be loaded. Return the reason."""
-        fault = original(fault_of(error, "steps"), sources_in(self.folder, self._manifest.sources))
+        fault = original(fault_of(error, "steps"), self.originals())
         place = fault.place
         if place is not None and place.own:
             self._channel.send(UserCodeFailed(None, fault))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.base.files import load_bytes
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.judging.parsed_sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
 from robbdd_tools.monitor.verdict import Outcome, Verdict
@@ -44,14 +46,21 @@ def register() -> None:
         matchers.use_step_matcher("parse")
 
 
-def load_steps(files: Iterable[Path]) -> None:
-    """Register the steps of RobBDD and then those in users' files. Exceptions in these files are not caught."""
+def load_steps(files: Iterable[Path], originals: Mapping[str, str] = MappingProxyType({})) -> None:
+    """Register the steps of RobBDD and then those in users' files. Exceptions in these files are not caught.
+
+    ``originals`` maps absolute paths of copies to the files that a debugger shows instead.
+    """
     register()
     matchers = import_module("behave.api.step_matchers")
     names: dict[str, Any] = {"use_step_matcher": matchers.use_step_matcher, "step_matcher": matchers.step_matcher}
     import_module("behave.step_registry").setup_step_decorators(names)
     for file in files:
-        import_module("behave.runner_util").exec_file(str(file), dict(names))
+        shown = originals.get(str(file.resolve()))
+        if shown is None:
+            import_module("behave.runner_util").exec_file(str(file), dict(names))
+        else:
+            exec(compile(load_bytes(file), shown, "exec", dont_inherit=True), {**names, "__file__": shown})
         matchers.use_default_step_matcher()
 
 

@@ -25,6 +25,7 @@ from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
+    DebuggerAwaited,
     LogLine,
     Output,
     RunMessage,
@@ -33,6 +34,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.protocol.run_folder import DEBUG_HOST
 from robbdd_tools.run.report import SIGNS, contact_words, deciding_words, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
@@ -126,6 +128,8 @@ class Display:
                 self._output(text.split("\n"))
             case Output(int(index), text):
                 self._printed.setdefault(index, []).extend(text.split("\n"))
+            case DebuggerAwaited(port):
+                self._console.print(plain(f"waiting for a debugger at {DEBUG_HOST}:{port} (Debug Adapter Protocol)"))
             case LogLine(level, text) if level != "info":
                 self._console.print(plain(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
             case _:

@@ -19,6 +19,7 @@ from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
+from robbdd_tools.run.debugging import check_debugger
 from robbdd_tools.run.pictures import NoPictures, no_display, render_videos, render_violations
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
@@ -118,6 +119,8 @@ def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
 
 def _run(options: RunOptions) -> int:
     path = options.paths[0]
+    if options.policy.debug is not None:
+        check_debugger()
     model = load_all(options.paths)
     selection, repeat, scenex = options.selection, options.repeat, options.scenex
     if options.rerun_failed:

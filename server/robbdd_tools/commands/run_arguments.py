@@ -34,6 +34,8 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
     allow_scenex(parser)
     allow_policy(parser)
+    text = "wait for a debugger of Python code on this port of 127.0.0.1; one process, no time limit (default: 5678)"
+    parser.add_argument("--debug", metavar="PORT", type=_port, nargs="?", const=DEBUGPY_PORT, help=text)
     allow_selection(parser)
     outputs = parser.add_argument_group("outputs")
     outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
@@ -73,6 +75,8 @@ def allow_scenex(parser: TakesArguments) -> None:
 
 
 MEBIBYTE = 1024 * 1024
+DEBUGPY_PORT = 5678
+"""The port that debuggers of Python use by default."""
 
 
 def allow_store(parser: TakesArguments) -> None:
@@ -148,12 +152,21 @@ def _outputs(options: argparse.Namespace, *, keep: bool = True) -> Outputs:
 
 def policy(options: argparse.Namespace) -> Policy:
     """Return the run policy of the parsed arguments."""
+    from robbdd_tools.run.debugging import debugged
     from robbdd_tools.run.scheduler import Policy
 
     found = Policy(stop_on_failure=options.stop_on_failure)
     found = found if options.jobs is None else replace(found, jobs=options.jobs)
+    if getattr(options, "debug", None) is not None:
+        found = debugged(found, options.debug)
     found = found if options.log_limit is None else replace(found, log_limit=options.log_limit * MEBIBYTE)
     return found if options.timeout is None else replace(found, timeout=options.timeout)
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 0 < int(text) < 65536:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a port: a number from 1 to 65535")
+    return int(text)
 
 
 def _substitution(text: str) -> tuple[str, str]:

@@ -54,6 +54,8 @@ class RunOptions:
     - ``where``, ``first``, ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs``: as for ``robbdd run``.
     - ``scenex``: the path of a ``.scenex``, absolute or from the folder of the model.
     - ``stop_on_failure``: execute nothing more after the first failure.
+    - ``debug``: execute all scenarios in one process without a time limit. It waits for a debugger, as the message
+      ``DebuggerAwaited`` says.
     - ``record``: render a picture of each violation.
     - ``token``: the name of the run in the messages about it.
     """
@@ -75,6 +77,7 @@ class RunOptions:
     bhv: Mapping[str, str] = field(default_factory=dict[str, str])
     scenex: str | None = None
     stop_on_failure: bool = False
+    debug: bool = False
 
     @classmethod
     def of(cls, argument: Mapping[str, Any]) -> RunOptions:
@@ -221,7 +224,7 @@ def _is_substitution(value: object) -> bool:
 
 _FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
     **dict.fromkeys(("uri", "scenario", "where", "token", "scenex"), (_is_text, "a text")),
-    **dict.fromkeys(("failed", "record", "stop_on_failure"), (_is_flag, "true or false")),
+    **dict.fromkeys(("failed", "record", "stop_on_failure", "debug"), (_is_flag, "true or false")),
     **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
     **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),
     "pairwise": (_is_strength, "2 or 3"),

@@ -14,6 +14,7 @@ from robbdd_tools.lsp.run_follower import RunFollower
 from robbdd_tools.lsp.run_options import RunOptions
 from robbdd_tools.lsp.run_request import RunText, plan_run
 from robbdd_tools.lsp.trust import refuse_run
+from robbdd_tools.run.debugging import check_debugger, free_port
 from robbdd_tools.run.pictures import NoPictures, render_violations
 from robbdd_tools.workbench.rerun import NothingFailed
 from robbdd_tools.workbench.run import begin_run
@@ -60,6 +61,8 @@ def cancel_run(ls: RobbddServer) -> None:
 
 async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     """Plan a run on the texts of open files, and prepare its folder. Raises ``RobbddError`` and ``OSError``."""
+    if options.debug:
+        check_debugger()
     results = list(ls.results)
     defaults = ls.settings.run_defaults(options.uri)
     planned = await ls.in_background(
@@ -75,6 +78,7 @@ async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
         repeat=planned.repeat,
         jobs=options.jobs,
         stop_on_failure=options.stop_on_failure,
+        debug=free_port() if options.debug else None,
     )
     return run, planned.text
 

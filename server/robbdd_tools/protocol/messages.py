@@ -121,6 +121,13 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True)
+class DebuggerAwaited:
+    """The agent waits for a debugger that connects to this port of the machine (Debug Adapter Protocol)."""
+
+    port: int
+
+
+@dataclass(frozen=True, slots=True)
 class LogLine:
     """A line for the log. ``level`` is ``info``, ``warning`` or ``error``."""
 
@@ -144,6 +151,7 @@ RunMessage = (
     | ScenarioFinished
     | UserCodeFailed
     | Output
+    | DebuggerAwaited
     | LogLine
     | RunFinished
 )
@@ -158,6 +166,7 @@ _TYPES: dict[str, type[RunMessage]] = {
         ScenarioFinished,
         UserCodeFailed,
         Output,
+        DebuggerAwaited,
         LogLine,
         RunFinished,
     )

@@ -11,6 +11,10 @@ CRASH = "ROBBDD_CRASH"
 """Environment variable: the path, without extension, of the files that record where an agent was when it crashed."""
 LIMIT = "ROBBDD_LIMIT"
 """Environment variable: limit of an agent's wall time per scenario, s; 0: no limit."""
+DEBUG_PORT = "ROBBDD_DEBUG_PORT"
+"""Environment variable: the port on which an agent waits for a debugger."""
+DEBUG_HOST = "127.0.0.1"
+"""Address of that port. A client of that port can execute code, so other machines must not reach it."""
 STARTUP = 120.0
 """Limit of the wall time from an agent's start, or from an order, to the start of the scenario, s."""
 NOTE_SIZE = 4096

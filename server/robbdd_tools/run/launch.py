@@ -17,7 +17,7 @@ from robbdd_tools.base.descendants import MARK, end_marked
 from robbdd_tools.base.interpreter import start
 from robbdd_tools.base.processes import describe_exit, end_group, request_end
 from robbdd_tools.protocol.messages import Execute, LogLine, RunMessage, decode, encode
-from robbdd_tools.protocol.run_folder import CRASH
+from robbdd_tools.protocol.run_folder import CRASH, DEBUG_PORT
 from robbdd_tools.protocol.run_folder import LIMIT as TIME_LIMIT
 from robbdd_tools.run.agent_log import LIMIT, BoundedLog
 from robbdd_tools.run.crashes import Crash, take_crash
@@ -40,7 +40,8 @@ class Agent:
     """One agent process of a run folder.
 
     ``number`` names the log of the process. ``module`` is the Python module to run, and ``arguments`` are its arguments
-    after the run folder. ``log_limit`` is the maximum size of the log in bytes.
+    after the run folder. ``log_limit`` is the maximum size of the log in bytes. With ``debug``, the process waits for a
+    debugger on this port.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Agent:
         arguments: Sequence[str] = (),
         log_limit: int = LIMIT,
         timeout: float = 0.0,
+        debug: int | None = None,
     ) -> None:
         folder = folder.absolute()
         self._work = folder / WORK
@@ -62,6 +64,8 @@ class Agent:
         self.crash = Crash()
         """Position of the process in the user's code when it ended, available after its last message."""
         more = {MARK: self._mark, CRASH: str(self._base), TIME_LIMIT: str(timeout)}
+        if debug is not None:
+            more[DEBUG_PORT] = str(debug)
         with self._log.stream as log:
             self._process = start(module, str(folder), *arguments, folder=self._work, log=log, more=more)
         self._leftovers = threading.Thread(target=self._end_leftovers, daemon=True)

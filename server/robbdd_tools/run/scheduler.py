@@ -23,6 +23,7 @@ from robbdd_tools.protocol.fault_places import sources_in
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
+    DebuggerAwaited,
     LogLine,
     MarginRanges,
     Output,
@@ -56,13 +57,14 @@ class Policy:
     """The policy of a run.
 
     It has the number of parallel processes, the wall time for each scenario in s, whether the first failure ends the
-    run, and ``log_limit``, the maximum size of each process's log in bytes.
+    run, ``log_limit``, the maximum size of each process's log in bytes, and the port of a debugger.
     """
 
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
     timeout: float = TIMEOUT
     stop_on_failure: bool = False
     log_limit: int = LIMIT
+    debug: int | None = None
 
     @classmethod
     def of(cls, *, jobs: int | None = None, timeout: float | None = None, stop_on_failure: bool = False) -> Self:
@@ -139,8 +141,7 @@ class Scheduler:
         If the messages end without ``ScenarioFinished``, the scenario is unfinished and ``ending`` is the reason.
         """
         self._order = OrderedMessages([index])
-        self._waiting.clear()
-        self._waiting.append((index,))
+        self._waiting = deque[tuple[int, ...]]([(index,)])
         yield from self._until_done()
 
     def close(self) -> None:
@@ -192,7 +193,8 @@ class Scheduler:
 
     def _launch(self) -> AgentWorker:
         policy, number = self._policy, next(self._agent_numbers)
-        worker = AgentWorker(Agent(self._folder, number, log_limit=policy.log_limit, timeout=policy.timeout))
+        agent = Agent(self._folder, number, log_limit=policy.log_limit, timeout=policy.timeout, debug=policy.debug)
+        worker = AgentWorker(agent, debugged=policy.debug is not None)
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
@@ -256,7 +258,7 @@ class Scheduler:
                     self._shared_outputs = worker.shared_outputs
                     self._watch(message)
                     yield message
-            case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output():
+            case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output() | DebuggerAwaited():
                 yield from self._pass_on(worker, message)
             case ClauseJudged():
                 worker.judged.add(message.line)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
 from robbdd_tools.protocol.messages import ScenarioFinished
+from robbdd_tools.run.debugging import debugged
 from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
@@ -225,9 +226,14 @@ def begin_run(
     repeat: int | None = None,
     jobs: int | None = None,
     stop_on_failure: bool = False,
+    debug: int | None = None,
 ) -> Run:
-    """Prepare the run of a plan in a run folder that the caller has created. Raises the errors of ``Run.begin``."""
-    return Run.begin(plan, place, Policy.of(jobs=jobs, stop_on_failure=stop_on_failure), repeat=repeat)
+    """Prepare the run of a plan in a run folder that the caller has created. Raises the errors of ``Run.begin``.
+
+    With ``debug``, the process that executes it waits for a debugger on this port.
+    """
+    policy = Policy.of(jobs=jobs, stop_on_failure=stop_on_failure)
+    return Run.begin(plan, place, policy if debug is None else debugged(policy, debug), repeat=repeat)
 
 
 def check_user_code(plan: Plan) -> None:
