@@ -181,3 +181,9 @@ def test_a_program_reads_and_writes(tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONUTF8": "1"}
     ending = processes.run_for(60, [sys.executable, "-c", code], tmp_path, environment, "text")
     assert ending == processes.Ending(3, "TEXT\n", "é\n")
+
+
+@posix
+def test_a_process_cannot_use_more_processor_time_than_it_has_set() -> None:
+    code = "from robbdd_tools.base.processes import limit_processor_time as f; f(1)\nwhile True: pass"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == -signal.SIGXCPU

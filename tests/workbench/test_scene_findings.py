@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from kit import EXAMPLES
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.limits import MIB, SCENE_MEMORY, SCENE_SECONDS
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp.framing import Answer, Forget, Request
 from robbdd_tools.lsp.worker import Inbox, Worker
@@ -55,6 +57,26 @@ def test_code_that_makes_a_model_is_not_executed(cell: Path) -> None:
     cell.with_name("making.py").write_text("from pathlib import Path\nPath(__file__).with_suffix('.ran').touch()\n")
     assert found(cell) == []
     assert not cell.with_name("making.ran").exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems cannot limit the memory of a process")
+def test_a_model_that_demands_more_memory_than_the_limit_is_refused(
+    cell: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texture = '<asset><texture name="t" type="2d" builtin="flat" width="20000" height="20000"/></asset><worldbody>'
+    rewrite(cell.with_name("five.xml"), ("<worldbody>", texture))
+    monkeypatch.setenv(SCENE_MEMORY.variable, str(600 * MIB))
+    (only,) = found(cell)
+    assert "unusable-model" in only or "scene-unchecked" in only
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows cannot limit the time of a process")
+def test_a_model_that_compiles_without_end_is_given_up(cell: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    endless = '<worldbody><replicate count="100000000" offset="1 0 0"><geom type="sphere" size=".01"/></replicate>'
+    rewrite(cell.with_name("five.xml"), ("<worldbody>", endless))
+    monkeypatch.setenv(SCENE_SECONDS.variable, "1")
+    (only,) = found(cell)
+    assert only.endswith("(the limit scene-seconds) [scene-unchecked]")
 
 
 def test_a_failed_examination_is_reported(cell: Path, monkeypatch: pytest.MonkeyPatch) -> None:

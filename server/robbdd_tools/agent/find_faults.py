@@ -13,7 +13,9 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.limits import SCENE_MEMORY, SCENE_SECONDS
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.base.processes import limit_memory, limit_processor_time
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 
@@ -42,6 +44,9 @@ def _kind(error: SceneError) -> FaultKind:
 def main() -> None:
     """Answer the request on standard input."""
     requests, answers = reserve_channel()
+    # An opened folder may contain a model that demands any amount of either.
+    limit_memory(SCENE_MEMORY.value())
+    limit_processor_time(SCENE_SECONDS.value())
     # Checking needs no graphics: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     with os.fdopen(requests, encoding="utf-8") as stream:

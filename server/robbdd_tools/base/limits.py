@@ -60,6 +60,10 @@ TEMPLATE_OUTPUT = Limit("template-output", 8 * MIB, "bytes")
 """Text that one block of a user's template may make."""
 TEMPLATE_MEMORY = Limit("template-memory", 512 * MIB, "bytes")
 """Address space of the process that renders a user's template, where the system can limit it."""
+SCENE_SECONDS = Limit("scene-seconds", 30, "seconds")
+"""Time to set up the scene instances of a file while it is checked; the examples take a second."""
+SCENE_MEMORY = Limit("scene-memory", 2048 * MIB, "bytes")
+"""Address space of the process that does so, where the system can limit it; the examples take 250 MiB."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
@@ -74,6 +78,8 @@ LIMITS: Mapping[str, Limit] = {
         TEMPLATE_SECONDS,
         TEMPLATE_OUTPUT,
         TEMPLATE_MEMORY,
+        SCENE_SECONDS,
+        SCENE_MEMORY,
     )
 }
 

@@ -182,6 +182,16 @@ def limit_memory(largest: int) -> None:
                 resource.setrlimit(resource.RLIMIT_AS, (largest, most))
 
 
+def limit_processor_time(seconds: int) -> None:
+    """End this process after ``seconds`` of processor time, whatever it executes. Windows has no such limit."""
+    if sys.platform != "win32":
+        import resource
+
+        _, most = resource.getrlimit(resource.RLIMIT_CPU)
+        if most == resource.RLIM_INFINITY or seconds < most:
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, most))
+
+
 def describe_exit(code: int) -> str:
     """Return an exit code of ``Popen`` as text: ``code 7``, ``signal SIGKILL`` or ``code 0xC0000005 (…)``."""
     if code < 0:

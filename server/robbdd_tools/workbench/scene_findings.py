@@ -13,9 +13,10 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.interpreter import run_for
-from robbdd_tools.base.limits import VALIDATION_SECONDS
+from robbdd_tools.base.limits import SCENE_SECONDS
 from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.base.processes import describe_exit
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
@@ -97,15 +98,15 @@ def _files(model: ModelSource) -> Iterator[Path]:
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:
     """Return the faults of the instances in a request; a text if they could not be examined."""
-    seconds = VALIDATION_SECONDS.value()
+    seconds = SCENE_SECONDS.value()
     try:
         ending = run_for(seconds, FIND, sent=request)
     except OSError as error:
         return str(error)
     if ending.code is None:
-        return f"it took longer than {seconds} seconds"
+        return f"it took longer than {seconds} seconds (the limit {SCENE_SECONDS.name})"
     if ending.code:
-        return (ending.errors.strip().splitlines() or [f"the process ended with code {ending.code}"])[-1]
+        return (ending.errors.strip().splitlines() or [f"the process ended with {describe_exit(ending.code)}"])[-1]
     return tuple(from_plain(SceneFault, one) for one in json.loads(ending.output))
 
 
