@@ -44,6 +44,7 @@ export function registerCommands(
     "robbdd.runUntilFailure": (target) => withModel(target, (uri) => runUntilFailure(server, replays, uri), RUNNABLE),
     "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
     "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
+    "robbdd.debugFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri, debug: true }), RUNNABLE),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),

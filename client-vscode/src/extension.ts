@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 import { LANGUAGES, Server } from "./client";
 import { registerCommands } from "./commands";
+import { Debugging } from "./debugging";
 import { noticeModels } from "./milestones";
 import { ComparisonView } from "./panels/comparison/view";
 import { GraphView } from "./panels/graph/view";
@@ -60,6 +61,7 @@ export function activate(context: vscode.ExtensionContext): void {
     comparisons,
     tests,
     noticeModels(),
+    new Debugging(runs, () => started.execute("robbdd.cancel", {})),
     ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests }, log, () =>
       reportIssue({ extension: version, server: running }),
     ),

@@ -135,6 +135,11 @@ class Editor {
   readonly lists: (readonly { readonly label: string; readonly description?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
   openRuns = 0;
+  /** Describes the debug adapter of a session. */
+  adapter: Handler = () => undefined;
+  /** The configurations of debug sessions, and whether they start. */
+  readonly debugged: unknown[] = [];
+  debugs = true;
   /** The texts of new documents. */
   readonly texts: string[] = [];
   readonly files = new Map<string, string>();
@@ -165,6 +170,8 @@ class Editor {
     this.lists.length = 0;
     this.openRuns = 0;
     this.texts.length = 0;
+    this.debugged.length = 0;
+    this.debugs = true;
   }
 
   /** Trust the workspace, as the user would. */
@@ -267,6 +274,24 @@ export const commands = {
   },
 };
 
+export class DebugAdapterServer {
+  constructor(
+    readonly port: number,
+    readonly host: string,
+  ) {}
+}
+
+export const debug = {
+  registerDebugAdapterDescriptorFactory: (_: string, factory: { createDebugAdapterDescriptor: Handler }) => {
+    editor.adapter = factory.createDebugAdapterDescriptor;
+    return ended;
+  },
+  startDebugging: (_: unknown, configuration: unknown) => {
+    editor.debugged.push(configuration);
+    return Promise.resolve(editor.debugs);
+  },
+};
+
 export const languages = { getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
 export const version = "1.91.0";
 export const env = { remoteName: undefined, appName: "Editor" };
@@ -348,6 +373,6 @@ export class TabInputWebview {
 export const CompletionItemKind = { Snippet: 14 };
 export const ProgressLocation = { Notification: 15 };
 export const StatusBarAlignment = { Left: 1 };
-export const TestRunProfileKind = { Run: 1 };
+export const TestRunProfileKind = { Run: 1, Debug: 2 };
 export const TextEditorRevealType = { InCenterIfOutsideViewport: 2 };
 export const ViewColumn = { Active: -1, Beside: -2, One: 1, Two: 2, Three: 3 };

@@ -103,6 +103,12 @@ export interface Output {
   readonly text: string;
 }
 
+/** The process of the run waits for a debugger at a port of this machine. */
+export interface DebuggerAwaited {
+  readonly type: "DebuggerAwaited";
+  readonly port: number;
+}
+
 export interface LogLine {
   readonly type: "LogLine";
   readonly level: string;
@@ -123,6 +129,7 @@ export type RunMessage =
   | ScenarioFinished
   | UserCodeFailed
   | Output
+  | DebuggerAwaited
   | LogLine
   | RunFinished;
 
@@ -158,6 +165,7 @@ const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
   ScenarioFinished: { index: isNumber, simulated: isNumber, wall: isNumber, stepping: isNumber },
   UserCodeFailed: { index: isNumberOrNull, id: isText, lines: (value) => Array.isArray(value) && value.every(isText) },
   Output: { index: isNumberOrNull, text: isText },
+  DebuggerAwaited: { port: isNumber },
   LogLine: { level: isText, text: isText },
   RunFinished: { ok: (value) => typeof value === "boolean" },
 };

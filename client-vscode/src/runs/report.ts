@@ -71,6 +71,8 @@ export class RunReport {
         waiting?.push(...lines);
         return waiting === undefined ? lines : [];
       }
+      case "DebuggerAwaited":
+        return [`    waiting for a debugger at port ${message.port}`];
       case "LogLine":
         return message.text.split(/\r?\n/).map((line) => `    ${message.level}: ${line}`);
       case "RunFinished":

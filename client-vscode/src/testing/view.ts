@@ -24,6 +24,7 @@ export class TestingView implements vscode.Disposable {
   private readonly run: vscode.TestRunProfile;
   private readonly withOptions: vscode.TestRunProfile;
   private readonly untilFailure: vscode.TestRunProfile;
+  private readonly debug: vscode.TestRunProfile;
   private readonly record: vscode.TestRunProfile;
 
   constructor(
@@ -47,13 +48,16 @@ export class TestingView implements vscode.Disposable {
       await this.upkeep.discover();
       await this.upkeep.showVisible(true);
     };
-    const { Run } = vscode.TestRunProfileKind;
+    const { Debug, Run } = vscode.TestRunProfileKind;
     this.run = controller.createRunProfile("Run", Run, (request, token) => this.start(request, token), true, undefined, true);
     this.withOptions = controller.createRunProfile("Run with Options…", Run, (request, token) =>
       this.startWithOptions(request, token),
     );
     this.untilFailure = controller.createRunProfile("Run until It Fails…", Run, (request, token) =>
       this.startUntilFailure(request, token),
+    );
+    this.debug = controller.createRunProfile("Debug", Debug, (request, token) =>
+      this.runner.execute(request, token, "robbdd.run", { options: { debug: true } }),
     );
     this.record = controller.createRunProfile("Run with Recording", Run, (request, token) =>
       this.runner.execute(request, token, "robbdd.record"),
@@ -92,7 +96,7 @@ export class TestingView implements vscode.Disposable {
   }
 
   dispose(): void {
-    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.withOptions, this.untilFailure, this.record, this.controller]) {
+    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.withOptions, this.untilFailure, this.debug, this.record, this.controller]) {
       part.dispose();
     }
   }
