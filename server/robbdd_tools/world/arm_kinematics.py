@@ -10,6 +10,7 @@ import numpy as np
 from robbdd_tools.world.composition import load_robot
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.robot_files import prepared_robot
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel
@@ -26,6 +27,10 @@ POSTURE = 0.2
 """Share of the way back to the home posture that a redundant arm moves in each iteration."""
 ARMS = 16
 """Size of the cache of arms; every configured robot is a separate entry."""
+TURNS = 2 * np.pi
+"""Limit (rad) of joints that turn without limits: cables of real ones do not allow more either."""
+VERTICAL, AHEAD = 0.999, 0.05
+"""Cosine of a vertical axis; bearing (rad) up to which a tool is straight ahead."""
 STRIDE = 0.3
 """Largest change of a joint in one iteration, rad."""
 
@@ -47,14 +52,21 @@ class Arm:
         joints = [self._model.joint(name) for name in robot.joints]
         self._places = np.array([joint.qposadr[0] for joint in joints])
         self._speeds = np.array([joint.dofadr[0] for joint in joints])
-        self.lower: FloatArray = np.array([joint.range[0] for joint in joints])
-        self.upper: FloatArray = np.array([joint.range[1] for joint in joints])
+        limited = [bool(self._model.jnt_limited[joint.id]) for joint in joints]
+        self.lower: FloatArray = np.array(
+            [j.range[0] if has else -TURNS for j, has in zip(joints, limited, strict=True)]
+        )
+        self.upper: FloatArray = np.array(
+            [j.range[1] if has else TURNS for j, has in zip(joints, limited, strict=True)]
+        )
         self.home: FloatArray = np.array(robot.home)
         self._position: FloatArray = self._data.site_xpos[self._site]
         self._rotation: FloatArray = self._data.site_xmat[self._site]
         self._jacobian: FloatArray = np.zeros((6, self._model.nv))
         self._turns: FloatArray = np.zeros((2, 4))
         self._weights: FloatArray = np.zeros(6)
+        # The results of the catalog's arms were published with the plain rule: their tools are straight ahead at home.
+        self._turns_with = (0.0, 1.0) if prepared_robot(robot.mjcf) is None else self._first_joint()
 
     def forward(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the tool's position (3,) m and rotation matrix (3, 3) for joint positions (n,) rad."""
@@ -62,10 +74,32 @@ class Arm:
         mujoco.mj_kinematics(self._model, self._data)
         return self._position.copy(), self._rotation.reshape(3, 3).copy()
 
+    def _first_joint(self) -> tuple[float, float] | None:
+        """Return the bearing (rad) of the tool at home, 0 straight ahead, and the sense of the first joint.
+
+        ``None`` if this joint does not turn about the vertical.
+        """
+        place, _ = self.forward(self.home)
+        joint = int(self._model.dof_jntid[self._speeds[0]])
+        vertical = float(self._data.xaxis[joint, 2])
+        if self._model.jnt_type[joint] != int(mujoco.mjtJoint.mjJNT_HINGE) or abs(vertical) < VERTICAL:
+            return None
+        bearing = float(np.arctan2(place[1], place[0]))
+        return bearing if abs(bearing) > AHEAD else 0.0, 1.0 if vertical > 0 else -1.0
+
+    def _turned(self, direction: float) -> float:
+        """Return the change of the first joint that turns the home posture to a direction (rad)."""
+        assert self._turns_with is not None
+        bearing, sense = self._turns_with
+        turn = direction - bearing
+        return sense * float(np.arctan2(np.sin(turn), np.cos(turn)))
+
     def towards(self, position: FloatArray) -> FloatArray:
         """Return the home posture (n,) with the first joint turned towards a position, within its limits."""
         posture = self.home.copy()
-        posture[0] += np.arctan2(position[1], position[0])
+        if self._turns_with is not None:
+            direction = np.arctan2(position[1], position[0])
+            posture[0] += direction if self._turns_with == (0.0, 1.0) else self._turned(direction)
         return np.minimum(np.maximum(posture, self.lower), self.upper)
 
     def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:

@@ -137,6 +137,9 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
         pair_given(spec, cast.staging.frictions, shapes | faces)
     rank_by_friction(spec, pads)
+    if any(equality.type == mujoco.mjtEq.mjEQ_TENDON for equality in spec.equalities):
+        # The engine cannot wake bodies that tendons of equal length connect.
+        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     try:
         with warnings.catch_warnings():
             # Keep the world's options; ignore those in a robot's file.

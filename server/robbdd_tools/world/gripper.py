@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.grasp import Grasp, finger_grasps, suction_grasps
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ class Gripper(ABC):
 
     def __init__(self, robot: RobotModel) -> None:
         self._robot = robot
+        self._motion = finger_motion(robot)
         self._firm = max(1, round(robot.grip_time / TICK))
 
     @abstractmethod
@@ -83,9 +85,9 @@ class Fingers(Gripper):
         """Move around the object and close until both fingers press on it."""
         yield from hand.move(at, self._robot.approach_speed)
         held = 0
-        closed = self._robot.gripper_closed
-        for _ in range(int((hand.control - closed) / (CLOSING * TICK)) + PATIENCE):
-            hand.control = max(closed, hand.control - CLOSING * TICK)
+        closed, step = self._robot.gripper_closed, CLOSING * TICK * self._motion.rate
+        for _ in range(int(abs(hand.control - closed) / step) + max(PATIENCE, round(self._motion.settling / TICK))):
+            hand.control = _towards(closed, hand.control, step)
             yield from hand.wait(1)
             held = held + 1 if hand.senses_object(name) else 0
             if held == self._firm:
@@ -96,8 +98,9 @@ class Fingers(Gripper):
 
     def release(self, hand: Hand) -> Step:
         """Open the fingers at their speed."""
-        while hand.control < self._robot.gripper_open:
-            hand.control = min(self._robot.gripper_open, hand.control + CLOSING * TICK)
+        while hand.control != self._robot.gripper_open:
+            step = CLOSING * TICK * self._motion.rate
+            hand.control = _towards(self._robot.gripper_open, hand.control, step)
             yield from hand.wait(1)
 
 
@@ -124,6 +127,11 @@ class Cup(Gripper):
         """Switch the vacuum off."""
         hand.control = self._robot.gripper_open
         yield from hand.wait(1)
+
+
+def _towards(goal: float, present: float, step: float) -> float:
+    """Return a control value one step nearer to a goal."""
+    return max(goal, present - step) if goal < present else min(goal, present + step)
 
 
 def gripper_of(robot: RobotModel) -> Gripper:

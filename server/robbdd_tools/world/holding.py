@@ -63,9 +63,10 @@ class Grips:
 
     def _held(self, robot: Robot, data: Any, touching: Mapping[int, Contacts]) -> set[int]:
         """Return the columns of the objects that a robot holds."""
-        if any(pad not in touching for pad in robot.pads):
+        faces = [_of_face(face, touching) for face in robot.faces]
+        if not all(faces):
             return set()
-        first, *others = (touching[pad] for pad in robot.pads)
+        first, *others = faces
         columns = set(first) - {-1}
         for other in others:
             columns &= other.keys()
@@ -81,6 +82,13 @@ class Grips:
         if contacts and not sealed:
             self.leaking.add(robot.name)
         return sealed if data.ctrl[robot.gripper] != robot.model.gripper_open else set()
+
+
+def _of_face(face: tuple[int, ...], touching: Mapping[int, Contacts]) -> Contacts:
+    """Return the contacts of a gripping face, which may consist of several pads."""
+    if len(face) == 1:
+        return touching.get(face[0], {})
+    return {column: contact for pad in face for column, contact in touching.get(pad, {}).items()}
 
 
 def _owners(model: Any, columns: Mapping[str, int], loose: list[str]) -> dict[int, int]:

@@ -17,6 +17,7 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
+from robbdd_tools.world.urdf_files import is_urdf, read_urdf, speeds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,14 +65,20 @@ def load(source: ModelSource) -> Any:
 
 @cache
 def _read(path: str) -> Any:
-    return mujoco.MjSpec.from_file(path)
+    return read_urdf(Path(path)) if is_urdf(Path(path)) else mujoco.MjSpec.from_file(path)
 
 
 def _read_made(path: Path) -> Any:
     problem = unusable(path)
     if problem is not None:
         raise ValueError(problem.reason)
-    return mujoco.MjSpec.from_file(str(path))
+    return _read(str(path))
+
+
+def velocity_limits(source: ModelSource, joints: Sequence[str], default: float) -> tuple[float, ...]:
+    """Return the speed limits (rad/s, m/s) of joints in a URDF file; ``default`` where there is none."""
+    stated = speeds(_path(source)) if source.kind in ("file", "ros") else {}
+    return tuple(stated.get(joint) or default for joint in joints)
 
 
 def _path(source: ModelSource) -> Path:

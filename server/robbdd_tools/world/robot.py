@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.finger_motion import finger_motion
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -35,6 +36,10 @@ class Robot:
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
         self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
         self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
+        self.faces = tuple(
+            tuple(int(model.geom(f"{name}/{pad}").id) for pad in face)
+            for face in finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
+        )
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
         """Seconds by which a joint's target leads to compensate for the servo's damping, shape (n,)."""

@@ -1,23 +1,41 @@
-"""Arms from the model files of an executable scene; missing servos and names are added."""
+"""Arms from users' model files. What a scene instance does not state is found in the file; missing servos are added."""
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.catalog.api import RobotModel
+import numpy as np
+
+from robbdd_tools.catalog.api import GripperKind, RobotModel
+from robbdd_tools.catalog.executable import ArmModel
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.model_files import compiled, load
+from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
+from robbdd_tools.world.gripper_actuators import GripperParts
+from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
+from robbdd_tools.world.home_posture import find_home
+from robbdd_tools.world.model_files import compiled, load, velocity_limits
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
 
 SPEED = 1.0
-"""Speed limit (rad/s) of an arm's joints if neither the file nor the model has one."""
+"""Speed limit (rad/s, m/s) of an arm's joints if neither the file nor the model has one."""
 STIFFNESS, DAMPING = 2000.0, 100.0
-"""Gains (N m/rad, N m s/rad) of the servos of an arm whose file has none."""
-GRIP_STIFFNESS, GRIP_DAMPING, GRIP_FORCE = 3000.0, 60.0, 15.0
-"""Gains (N/m, N s/m) and force limit (N) of a gripper whose file has no servo."""
+"""Smallest gains (N m/rad, N m s/rad) of the servos that are added."""
+SLIDING = 10.0
+"""Factor of these gains for a sliding joint (N/m, N s/m)."""
+FREQUENCY, RATIO = 20.0, 0.7
+"""Natural frequency (rad/s) and damping ratio of added servos that move a large inertia."""
+TOOL = "robbdd-tool"
+ALIGNED = np.cos(np.radians(5.0))
+"""Cosine of the angle between the stated tool's y axis and the fingers' direction up to which it is kept."""
+OUTWARDS = np.cos(np.radians(30.0))
+"""Cosine of the angle between the stated tool's z axis and the direction out of the hand up to which it is kept."""
+ARMS = 16
+"""Number of arms that are kept."""
 _prepared: dict[str, Any] = {}
 
 
@@ -27,131 +45,243 @@ def prepared_robot(key: str) -> Any | None:
 
 
 def robot_from(source: ModelSource, name: str) -> RobotModel:
-    """Return the arm in a file, with missing servos and names added; raises ``SceneError``."""
-    arm = source.arm
-    if arm is None or not arm.tool or not arm.actuator or not arm.pads or arm.open is None or arm.closed is None:
-        wanted = "'tool: \"…\" gripper { … }' in its model block"
-        raise SceneError(f"'{name}' cannot pick without a tool and a gripper: add {wanted}", origin=source.origin)
+    """Return the arm in a file, with missing servos and names added; raises ``SceneError``.
+
+    A file is read once in a process; code that makes a model is called each time.
+    """
+    return _read_robot(source, name) if source.kind == "python" else _read_once(source, name)
+
+
+@lru_cache(maxsize=ARMS)
+def _read_once(source: ModelSource, name: str) -> RobotModel:
+    return _read_robot(source, name)
+
+
+def _read_robot(source: ModelSource, name: str) -> RobotModel:
+    arm = source.arm or ArmModel()
     spec = load(source)
-    tool = _tool_site(spec, source, arm.tool)
-    joints = _chain(spec, source, tool)
-    pads = tuple(_pad(spec, source, pad) for pad in arm.pads)
-    _servos(spec, source, joints)
-    _gripper_servo(spec, source, arm.actuator)
+    _clear(spec, source)
+    chain = _chain_to_palm(spec, source, arm)
+    joints = _joints(source, chain)
+    parts = GripperParts(spec, source, arm, str(chain[-1].name))
+    parts.name_geoms()
+    gripper = GripperReader(parts).read()
+    tool = _tool(spec, source, arm.tool, gripper, chain[-1])
+    _servos(spec, joints)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
         body.gravcomp = 1.0 if body.name != "world" else 0.0
     model = compiled(spec, source)
-    home = arm.home or _home(model, joints)
-    for what, numbers in (("home", home), ("velocity", arm.velocity or (SPEED,) * len(joints))):
+    velocity = arm.velocity or velocity_limits(source, joints, SPEED)
+    home = arm.home or find_home(model, source, joints, tool, dict(gripper.open_joints), chain[-1].name)
+    for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
             raise SceneError(counted, origin=source.origin)
+    _refuse_outside(model, source, joints, home)
     key = f"{source.iri}#{name}"
     _prepared[key] = spec
-    limits = [
-        float(model.joint(joint).actfrcrange[1]) if hasattr(model.joint(joint), "actfrcrange") else 0.0
-        for joint in joints
-    ]
+    motion = FingerMotion(gripper.rate, gripper.settling, gripper.open_joints, gripper.faces)
+    set_finger_motion(key, motion)
+    limits = (float(model.jnt_actfrcrange[model.joint(joint).id, 1]) for joint in joints)
     return RobotModel(
         name=name,
         prefixes=(),
         mjcf=key,
         joints=joints,
         home=tuple(home),
-        velocity_limits=tuple(arm.velocity or (SPEED,) * len(joints)),
+        velocity_limits=tuple(velocity),
         torque_limits=tuple(limits),
         tool_site=tool,
-        gripper_actuator=arm.actuator,
-        gripper_open=arm.open,
-        gripper_closed=arm.closed,
-        pads=pads,
+        gripper_actuator=gripper.actuator,
+        gripper_open=gripper.open,
+        gripper_closed=gripper.closed,
+        pads=gripper.pads,
         mount=(0.0, 0.0, 0.15),
-        stroke=arm.stroke,
+        stroke=gripper.stroke,
         doc=f"from {source.name}",
         source=source.name,
+        gripper=gripper.kind,
     )
+
+
+def _clear(spec: Any, source: ModelSource) -> None:
+    """Remove the file's floors and names its joints. Raises ``SceneError`` for an arm on a floating base."""
+    for geom in list(spec.worldbody.geoms):
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+            spec.delete(geom)
+    for number, body in enumerate(spec.bodies[1:]):
+        body.name = body.name or f"part{number}"
+    for number, actuator in enumerate(spec.actuators):
+        actuator.name = actuator.name or f"actuator{number}"
+    for number, joint in enumerate(spec.joints):
+        joint.name = joint.name or f"joint{number}"
+        if joint.type in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL):
+            kind = "a free joint" if joint.type == mujoco.mjtJoint.mjJNT_FREE else "a ball joint"
+            text = (
+                f"{source.name} has {kind} '{joint.name}': only arms with rotating and sliding joints can be simulated"
+            )
+            raise SceneError(text, origin=source.origin)
 
 
 def _names(things: Any) -> str:
     return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
 
 
-def _tool_site(spec: Any, source: ModelSource, name: str) -> str:
-    """Return the tool's site; for a body of that name, create one."""
-    if spec.site(name) is not None:
-        return name
-    body = spec.body(name)
+def _tool_body(spec: Any, source: ModelSource, name: str) -> Any:
+    """Return the body of the stated tool."""
+    site = spec.site(name)
+    body = site.parent if site is not None else spec.body(name)
     if body is None:
         known = f"it has the sites {_names(spec.sites)} and the bodies {_names(spec.bodies[1:])}"
         raise SceneError(f"{source.name} has no site or body '{name}' for the tool; {known}", origin=source.origin)
-    body.add_site(name=name)
-    return name
+    return body
 
 
-def _chain(spec: Any, source: ModelSource, tool: str) -> tuple[str, ...]:
-    """Return the hinges between the arm's base and its tool."""
-    body = spec.site(tool).parent
-    joints: list[str] = []
+def _path(body: Any) -> list[Any]:
+    found: list[Any] = []
     while body is not None and body.name != "world":
-        hinges = [joint.name for joint in body.joints if joint.type == mujoco.mjtJoint.mjJNT_HINGE]
-        joints = hinges + joints
+        found.insert(0, body)
         body = body.parent
+    return found
+
+
+def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
+    """Return the bodies to the one that carries all gripping faces.
+
+    Without stated faces, this is the first one from which several branches with joints lead on, or the last one, but
+    not one beyond the stated tool.
+    """
+    tool = _path(_tool_body(spec, source, arm.tool)) if arm.tool else []
+    carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
+    paths = [[body.name for body in _path(one)] for one in carriers if one is not None]
+    if len(paths) > 1 and len(paths) == len(arm.pads):
+        common = [name for name in paths[0] if all(name in path for path in paths)]
+        if common:
+            return _path(spec.body(common[-1]))
+    body = spec.worldbody
+    while True:
+        branches = [child for child in body.bodies if _moves(child)]
+        if len(branches) != 1:
+            break
+        body = branches[0]
+    suctions = [one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_BODY]
+    if not branches and suctions:
+        body = spec.body(str(suctions[0].target))
+    if not branches and len(carriers) == 1 and carriers[0] is not None:
+        body = carriers[0]
+    if body.name == "world":
+        text = f"{source.name} is not one arm: " + (
+            f"{len(branches)} chains of joints begin at its base" if branches else "it has no joints"
+        )
+        raise SceneError(text, origin=source.origin)
+    common = {one.name for one in tool}
+    return [one for one in _path(body) if not tool or one.name in common]
+
+
+def _moves(body: Any) -> bool:
+    return bool(body.joints) or any(_moves(child) for child in body.bodies)
+
+
+def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
+    """Return the joints of the arm, from the base on."""
+    joints = tuple(str(joint.name) for body in chain for joint in body.joints)
     if not joints:
-        raise SceneError(f"no joint leads to the tool '{tool}' of {source.name}", origin=source.origin)
-    return tuple(joints)
+        raise SceneError(f"no joint leads to the hand '{chain[-1].name}' of {source.name}", origin=source.origin)
+    return joints
 
 
-def _pad(spec: Any, source: ModelSource, name: str) -> str:
-    """Return a gripping face; for a body of that name, its first shape."""
-    if spec.geom(name) is not None:
-        return name
-    body = spec.body(name)
-    touching = [] if body is None else [geom for geom in body.geoms if geom.contype or geom.conaffinity]
-    if not touching:
-        known = f"it has the geoms {_names(spec.geoms)} and the bodies {_names(spec.bodies[1:])}"
-        raise SceneError(f"{source.name} has no gripping face '{name}'; {known}", origin=source.origin)
-    face = touching[0]
-    face.name = name
-    # URDF does not describe contacts: make gripping faces stiff and rough like rubber, or light objects slip out.
-    face.condim, face.friction = 4, [0.9, 0.01, 0.001]
-    face.solref, face.solimp = [0.005, 1.0], [0.95, 0.99, 0.001, 0.5, 2.0]
-    return name
+def _tool(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, palm: Any) -> str:
+    """Return the name of the tool's site, with z out of the hand and y along the closing direction.
+
+    A stated site or body with such axes is kept; any other one gives the place only.
+    """
+    site, body = (spec.site(stated), spec.body(stated)) if stated else (None, None)
+    if site is None and body is not None:
+        site = body.add_site(name=stated)
+    across, ahead = gripper.across, gripper.ahead
+    place, kept = gripper.middle, None
+    if site is not None:
+        model = compiled(spec, source)
+        data: Any = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        number, hand = model.site(stated).id, model.body(palm.name).id
+        turn = data.xmat[hand].reshape(3, 3)
+        axes = turn.T @ data.site_xmat[number].reshape(3, 3)
+        place = turn.T @ (data.site_xpos[number] - data.xpos[hand])
+        is_cup = gripper.kind is GripperKind.SUCTION
+        if axes[:, 2] @ ahead >= OUTWARDS:
+            kept, ahead = axes[:, 2], axes[:, 2]
+            if is_cup or abs(axes[:, 1] @ across) >= ALIGNED:
+                return stated
+    across = across - (across @ ahead) * ahead
+    across /= np.linalg.norm(across)
+    frame = np.column_stack([np.cross(across, ahead), across, ahead if kept is None else kept])
+    quaternion: FloatArray = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, frame.ravel())
+    palm.add_site(name=TOOL, pos=place, quat=quaternion)
+    return TOOL
 
 
-def _servos(spec: Any, source: ModelSource, joints: tuple[str, ...]) -> None:
-    """Give each joint without a position servo one."""
-    driven = {str(actuator.target): actuator for actuator in spec.actuators}
+def _servos(spec: Any, joints: tuple[str, ...]) -> None:
+    """Give each joint without a position servo one, in place of its motor or velocity servo.
+
+    A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too.
+    """
+    driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
+    inertias = _inertias(spec, joints)
     for joint in joints:
         actuator = driven.get(joint)
-        if actuator is None:
-            _add_servo(spec, joint, joint, STIFFNESS, DAMPING)
-        elif actuator.biastype != mujoco.mjtBias.mjBIAS_AFFINE or actuator.gainprm[0] <= 0:
-            message = f"the joint '{joint}' of {source.name} is not driven by a position servo"
-            raise SceneError(f"{message}: use <position>, or leave its actuator out", origin=source.origin)
+        if actuator is not None and _is_position_servo(actuator):
+            continue
+        limit = 0.0
+        if actuator is not None:
+            limit = _largest_force(actuator)
+            spec.delete(actuator)
+        sliding = SLIDING if spec.joint(joint).type == mujoco.mjtJoint.mjJNT_SLIDE else 1.0
+        stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertias[joint])
+        damping = max(DAMPING * sliding, 2 * RATIO * (stiffness * inertias[joint]) ** 0.5)
+        servo = spec.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        servo.set_to_position(kp=stiffness, kv=damping)
+        if limit > 0:
+            servo.forcerange, servo.forcelimited = [-limit, limit], True
 
 
-def _gripper_servo(spec: Any, source: ModelSource, name: str) -> None:
-    if spec.actuator(name) is not None:
-        return
-    if spec.joint(name) is None:
-        known = f"it has the actuators {_names(spec.actuators)} and the joints {_names(spec.joints)}"
-        raise SceneError(
-            f"{source.name} has no actuator or joint '{name}' for the gripper; {known}", origin=source.origin
-        )
-    servo = _add_servo(spec, name, name, GRIP_STIFFNESS, GRIP_DAMPING)
-    servo.forcerange = [-GRIP_FORCE, GRIP_FORCE]
-    servo.forcelimited = True
+def _is_position_servo(actuator: Any) -> bool:
+    return (
+        actuator.biastype == mujoco.mjtBias.mjBIAS_AFFINE
+        and actuator.gainprm[0] > 0
+        and abs(actuator.gainprm[0] + actuator.biasprm[1]) <= 1e-6 * actuator.gainprm[0]
+        and actuator.gear[0] == 1.0
+    )
 
 
-def _add_servo(spec: Any, name: str, joint: str, stiffness: float, damping: float) -> Any:
-    servo = spec.add_actuator(name=name, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-    servo.set_to_position(kp=stiffness, kv=damping)
-    return servo
+def _largest_force(actuator: Any) -> float:
+    """Return the largest force (N, N m) of an actuator on its joint; 0 if it has no limit."""
+    if actuator.forcerange[1] > actuator.forcerange[0]:
+        return float(actuator.forcerange[1] * abs(actuator.gear[0]))
+    is_motor = actuator.biastype == mujoco.mjtBias.mjBIAS_NONE
+    if is_motor and actuator.ctrlrange[1] > actuator.ctrlrange[0]:
+        return float(actuator.ctrlrange[1] * abs(actuator.gear[0]) * actuator.gainprm[0])
+    return 0.0
 
 
-def _home(model: Any, joints: tuple[str, ...]) -> tuple[float, ...]:
-    """Return the joint positions of the first key frame, else the middle of each joint's range."""
-    if model.nkey:
-        return tuple(float(model.key_qpos[0, model.joint(joint).qposadr[0]]) for joint in joints)
-    return tuple(float(sum(model.joint(joint).range)) / 2 for joint in joints)
+def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
+    """Return the inertia (kg m², kg) that each joint moves where the file places the arm."""
+    model = spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    full = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, full)
+    return {joint: float(full[dof, dof]) for joint in joints for dof in [int(model.joint(joint).dofadr[0])]}
+
+
+def _refuse_outside(model: Any, source: ModelSource, joints: tuple[str, ...], home: tuple[float, ...]) -> None:
+    for joint, value in zip(joints, home, strict=True):
+        number = model.joint(joint).id
+        low, high = (float(bound) for bound in model.jnt_range[number])
+        if model.jnt_limited[number] and not low - 1e-6 <= value <= high + 1e-6:
+            text = (
+                f"the home position {value:.4g} of the joint '{joint}' is outside its limits, {low:.4g} to {high:.4g}"
+            )
+            raise SceneError(f"{text} in {source.name}", origin=source.origin)

@@ -6,6 +6,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.finger_motion import finger_motion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,7 +66,10 @@ def _touching_at_home(child: Any, robot: RobotModel) -> Iterator[tuple[int, int]
     data = mujoco.MjData(model)
     for joint, angle in zip(robot.joints, robot.home, strict=True):
         data.qpos[model.joint(joint).qposadr[0]] = angle
-    for pad in robot.pads:
+    motion = finger_motion(robot)
+    for name, position in motion.open_joints:
+        data.qpos[model.joint(name).qposadr[0]] = position
+    for pad in () if motion.open_joints else robot.pads:
         body = model.body(int(model.geom_bodyid[model.geom(pad).id]))
         for joint in range(int(body.jntadr[0]), int(body.jntadr[0] + body.jntnum[0])):
             data.qpos[model.jnt_qposadr[joint]] = robot.gripper_open

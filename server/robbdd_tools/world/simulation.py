@@ -15,6 +15,7 @@ from robbdd_tools.world.belts import Belts
 from robbdd_tools.world.contact_forces import ContactForces
 from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.world.errors import SimulationError
+from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.holding import Grips
 from robbdd_tools.world.recorder import Bodies, Recorder
 from robbdd_tools.world.robot import Robot
@@ -173,6 +174,11 @@ class Simulation:
 
     def open_fingers(self, robot: Robot, data: Any) -> None:
         """Put a robot's fingers into the open position in ``data``: the start, or a trial state."""
+        motion = finger_motion(robot.model)
+        for name, position in motion.open_joints:
+            data.qpos[self.model.joint(f"{robot.name}/{name}").qposadr[0]] = position
+        if motion.open_joints:
+            return
         for pad in robot.pads:
             body = self.model.body(int(self.model.geom_bodyid[pad]))
             for joint in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):

@@ -1,0 +1,199 @@
+"""Actuators of grippers in users' model files: found, coupled or added."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.gripper_faces import length_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.executable import ArmModel, ModelSource
+
+GRIP_FORCE = 15.0
+"""Force (N) of each finger of a gripper whose file has no actuator."""
+GRIP_STIFFNESS, GRIP_DAMPING = 3000.0, 60.0
+"""Gains (N/m, N s/m) of such a gripper; for a rotating finger, times the square of its length."""
+SUCTION_FORCE = 42.0
+"""Pull (N) of a suction cup whose file has no actuator: that of the catalog's cup."""
+
+
+class GripperParts:
+    """The parts of a gripper in the engine's editable description of an arm: the body ``palm`` and all beyond it."""
+
+    def __init__(self, spec: Any, source: ModelSource, arm: ArmModel, palm: str) -> None:
+        self.spec = spec
+        self.source = source
+        self.arm = arm
+        self.palm = palm
+
+    @property
+    def bodies(self) -> list[Any]:
+        """The palm and all bodies that it carries."""
+        palm = self.spec.body(self.palm)
+        return [palm, *palm.find_all("body")]
+
+    @property
+    def joints(self) -> list[Any]:
+        """The joints of the fingers."""
+        return [joint for body in self.bodies[1:] for joint in body.joints]
+
+    def error(self, text: str) -> SceneError:
+        """Return an error about the gripper."""
+        return SceneError(f"the gripper of {self.source.name} {text}", origin=self.source.origin)
+
+    def compiled(self) -> Any:
+        """Return the compiled model of the arm. Raises ``SceneError``."""
+        try:
+            return self.spec.copy().compile()
+        except ValueError as error:
+            reason = f"the model {self.source.name} does not compile: {error}"
+            raise SceneError(reason, origin=self.source.origin) from error
+
+    def name_geoms(self) -> None:
+        """Name every collision shape of the gripper, so that it can be a gripping face."""
+        for number, geom in enumerate(geom for body in self.bodies for geom in body.geoms):
+            if (geom.contype or geom.conaffinity) and not geom.name:
+                geom.name = f"robbdd-face{number}"
+
+
+class GripperActuator:
+    """Finds the actuator of a gripper."""
+
+    def __init__(self, parts: GripperParts) -> None:
+        self._parts = parts
+        self._spec = parts.spec
+        self._source = parts.source
+        self._arm = parts.arm
+
+    def find(self) -> Any:
+        """Return the gripper's actuator; one is added for a joint without one, and several are coupled."""
+        name = self._arm.actuator
+        if name:
+            found = self._spec.actuator(name)
+            if found is None and self._spec.joint(name) is None:
+                raise self._parts.error(f"has no actuator or joint '{name}': the file has {_known(self._spec)}")
+            return found or self._servo(self._spec.joint(name))
+        found = [one for one in self._spec.actuators if self._is_behind(one)]
+        if found:
+            return self._coupled(found)
+        free = [joint for joint in self._parts.joints if not self._follows(joint)]
+        if free:
+            return self._coupled([self._servo(joint) for joint in free])
+        if len(self._arm.pads) == 1:
+            return self._vacuum(self._arm.pads[0])
+        lacks = f"beyond the body '{self._parts.palm}', the file has no joints and no actuators"
+        wanted = 'Name a file with arm and gripper, or the face of a suction cup: gripper { pads: "cup" stroke: 30 mm }'
+        text = f"the arm in {self._source.name} has no gripper: {lacks}. {wanted}"
+        raise SceneError(text, origin=self._source.origin)
+
+    def _is_behind(self, actuator: Any) -> bool:
+        """Return whether an actuator drives a part of the gripper."""
+        behind = {joint.name for joint in self._parts.joints}
+        match actuator.trntype:
+            case mujoco.mjtTrn.mjTRN_JOINT:
+                return str(actuator.target) in behind
+            case mujoco.mjtTrn.mjTRN_BODY:
+                return any(body.name == actuator.target for body in self._parts.bodies)
+            case mujoco.mjtTrn.mjTRN_TENDON:
+                return self._wraps(str(actuator.target), behind)
+            case _:
+                return False
+
+    def _wraps(self, tendon: str, behind: set[str]) -> bool:
+        model = self._parts.compiled()
+        number = model.tendon(tendon).id
+        start = int(model.tendon_adr[number])
+        wraps = range(start, start + int(model.tendon_num[number]))
+        joints = [int(model.wrap_objid[i]) for i in wraps if model.wrap_type[i] == int(mujoco.mjtWrap.mjWRAP_JOINT)]
+        sites = [int(model.wrap_objid[i]) for i in wraps if model.wrap_type[i] == int(mujoco.mjtWrap.mjWRAP_SITE)]
+        own = {body.name for body in self._parts.bodies}
+        return any(model.joint(joint).name in behind for joint in joints) or any(
+            model.body(int(model.site_bodyid[site])).name in own for site in sites
+        )
+
+    def _follows(self, joint: Any) -> bool:
+        """Return whether an equality makes a joint follow another one."""
+        return any(one.type == mujoco.mjtEq.mjEQ_JOINT and one.name1 == joint.name for one in self._spec.equalities)
+
+    def _servo(self, joint: Any) -> Any:
+        """Add a position servo to a finger's joint."""
+        lever = 1.0
+        if joint.type == mujoco.mjtJoint.mjJNT_HINGE:
+            lever = max(0.02, length_of(self._parts.compiled(), str(joint.name)))
+        servo = self._spec.add_actuator(name=joint.name, target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        servo.set_to_position(kp=GRIP_STIFFNESS * lever**2, kv=GRIP_DAMPING * lever**2)
+        servo.forcerange = [-GRIP_FORCE * lever, GRIP_FORCE * lever]
+        servo.forcelimited = True
+        servo.ctrlrange, servo.ctrllimited = joint.range, True
+        return servo
+
+    def _vacuum(self, name: str) -> Any:
+        geom = gripping_face(self._spec, self._source, name)
+        actuator = self._spec.add_actuator(name="robbdd-vacuum", target=geom.parent.name)
+        actuator.trntype = mujoco.mjtTrn.mjTRN_BODY
+        actuator.gainprm[0] = SUCTION_FORCE
+        actuator.ctrlrange, actuator.ctrllimited = [0.0, 1.0], True
+        return actuator
+
+    def _coupled(self, actuators: Sequence[Any]) -> Any:
+        """Return the first of several actuators, which then moves all fingers with the force of them all."""
+        first, *others = actuators
+        if others and any(one.trntype != mujoco.mjtTrn.mjTRN_JOINT for one in actuators):
+            names = ", ".join(str(one.name) for one in actuators)
+            raise self._parts.error(
+                f'has several actuators ({names}): name the one that closes it, gripper {{ actuator: "…" }}'
+            )
+        leader = self._spec.joint(first.target)
+        for other in others:
+            follower = self._spec.joint(other.target)
+            mirrored = _is_mirrored(first.ctrlrange, other.ctrlrange) or _is_mirrored(leader.range, follower.range)
+            if not self._follows(follower):
+                equality = self._spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT)
+                equality.name1, equality.name2 = follower.name, leader.name
+                equality.objtype = mujoco.mjtObj.mjOBJ_JOINT
+                equality.data[:5] = [0.0, -1.0 if mirrored else 1.0, 0.0, 0.0, 0.0]
+            self._spec.delete(other)
+        if others:
+            share = 1.0 + len(others)
+            first.gainprm, first.biasprm = first.gainprm * share, first.biasprm * share
+            first.forcerange = first.forcerange * share
+        return first
+
+
+def gripping_face(spec: Any, source: ModelSource, name: str) -> Any:
+    """Return a gripping face; for a body of that name, its first collision shape. Raises ``SceneError``."""
+    geom = spec.geom(name)
+    if geom is not None:
+        return geom
+    body = spec.body(name)
+    touching = [] if body is None else [one for one in body.geoms if one.contype or one.conaffinity]
+    if not touching:
+        known = f"it has the geoms {_names(spec.geoms)} and the bodies {_names(spec.bodies[1:])}"
+        raise SceneError(f"{source.name} has no gripping face '{name}'; {known}", origin=source.origin)
+    touching[0].name = touching[0].name or name
+    if source.format == "urdf":
+        make_rubber(touching[0])
+    return touching[0]
+
+
+def make_rubber(face: Any) -> None:
+    """Make a gripping face stiff and rough like rubber: URDF does not describe contacts, and light objects slip out."""
+    face.condim, face.friction = 4, [0.9, 0.01, 0.001]
+    face.solref, face.solimp = [0.005, 1.0], [0.95, 0.99, 0.001, 0.5, 2.0]
+
+
+def _is_mirrored(one: FloatArray, other: FloatArray) -> bool:
+    """Return whether two ranges of values are opposite, as those of two fingers that move in opposite directions."""
+    return bool(one[0] != one[1] and abs(one[0] + other[1]) + abs(one[1] + other[0]) < 1e-6 and one[0] != other[0])
+
+
+def _names(things: Any) -> str:
+    return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
+
+
+def _known(spec: Any) -> str:
+    return f"the actuators {_names(spec.actuators)} and the joints {_names(spec.joints)}"

@@ -1,0 +1,153 @@
+"""Gripping faces of two fingers, found by where their parts are when the gripper is open and closed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+Faces = tuple[tuple[str, ...], ...]
+"""The names of the geoms of each gripping face."""
+MOVES = 0.004
+"""Smallest change of the distance between two gripping faces, m."""
+NEVER_MEET = 0.02
+"""Distance (m) between closed faces from which on a gripper cannot hold the catalog's smallest object, 31.5 mm."""
+TIPS = 0.8
+"""Share of the largest such change from which on a shape of the same finger belongs to its gripping face."""
+OPENS = 0.015
+"""Smallest opening (m) of fingers: parts of a linkage that approach each other by less are none."""
+LEVEL = 0.003
+"""Difference (m) of the distances of closed shapes up to which they form one gripping face."""
+
+
+def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, FloatArray]) -> Faces:
+    """Return the shapes of the two fingers that approach each other most and meet; nothing without such fingers.
+
+    ``bodies`` are those of the gripper, the palm first. ``states`` are the joint positions of the model at the two ends
+    of the actuator's values.
+    """
+    palm = bodies[0]
+    fingers = _fingers(model, bodies)
+    base = int(model.body_weldid[palm])
+    moving = [body for body in fingers if body != base]
+    branch = {body: _branch(model, body, palm) for body in moving}
+    moves = _movements(model, states)
+    apart = [
+        (one, other)
+        for one, other in combinations(moving, 2)
+        if branch[one] != branch[other]
+        and _joints_to(model, one, palm) == _joints_to(model, other, palm)
+        and _approach(moves[one], moves[other])
+    ]
+    # One finger may close on the palm.
+    pairs = apart or [(one, base) for one in moving if base in fingers]
+    best, largest = Faces(), OPENS
+    for one, other in pairs:
+        change, faces = _tips(model, _names_of(model, fingers[one]), _names_of(model, fingers[other]), states)
+        if change > largest + 1e-6:
+            best, largest = faces, change
+    return best
+
+
+def _fingers(model: Any, bodies: Sequence[int]) -> dict[int, list[int]]:
+    """Return the collision shapes of each finger; bodies without a joint between them are one finger."""
+    found: dict[int, list[int]] = {}
+    for body in bodies:
+        first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
+        own = [g for g in range(first, first + count) if model.geom_contype[g] or model.geom_conaffinity[g]]
+        if own:
+            found.setdefault(int(model.body_weldid[body]), []).extend(own)
+    return found
+
+
+def _tips(
+    model: Any, one: Sequence[str], other: Sequence[str], states: Mapping[float, FloatArray]
+) -> tuple[float, Faces]:
+    """Return the shapes of two fingers that meet when closed, and by how much their distance changes (m)."""
+    changes: dict[tuple[str, str], tuple[float, float]] = {}
+    for names in product(one, other):
+        near, far = sorted(max(0.0, gap(model, state, ((names[0],), (names[1],)))) for state in states.values())
+        # Parts that do not meet belong to a linkage; those that move most are the tips.
+        if near <= NEVER_MEET and far - near >= MOVES:
+            changes[names] = far - near, near
+    largest = max((change for change, _ in changes.values()), default=0.0)
+    moved = {names: near for names, (change, near) in changes.items() if change >= TIPS * largest}
+    nearest = min(moved.values(), default=0.0)
+    tips = [names for names, near in moved.items() if near <= nearest + LEVEL]
+    return largest, (tuple(dict.fromkeys(name for name, _ in tips)), tuple(dict.fromkeys(name for _, name in tips)))
+
+
+def _movements(model: Any, states: Mapping[float, FloatArray]) -> FloatArray:
+    """Return how far (m) each body moves between the two states, shape (bodies, 3)."""
+    data = mujoco.MjData(model)
+    places: list[FloatArray] = []
+    for state in states.values():
+        data.qpos[:] = state
+        mujoco.mj_kinematics(model, data)
+        places.append(data.xipos.copy())
+    return places[1] - places[0]
+
+
+def _approach(one: FloatArray, other: FloatArray) -> bool:
+    """Return whether two movements (m) are opposite, or one of them is none."""
+    lengths = float(np.linalg.norm(one)), float(np.linalg.norm(other))
+    return min(lengths) < MOVES / 4 or float(one @ other) <= -0.5 * lengths[0] * lengths[1]
+
+
+def _joints_to(model: Any, body: int, palm: int) -> int:
+    """Return the number of joints between a body and the palm: equal for the tips of both fingers."""
+    below = set(_ancestors(model, body)) - set(_ancestors(model, palm))
+    return sum(int(model.body_jntnum[one]) for one in below)
+
+
+def _branch(model: Any, body: int, palm: int) -> int:
+    """Return the body next to the palm on the way from it to a body."""
+    path = list(_ancestors(model, body))
+    return path[path.index(palm) - 1] if palm in path else body
+
+
+def _ancestors(model: Any, body: int) -> Iterator[int]:
+    while body:
+        yield body
+        body = int(model.body_parentid[body])
+
+
+def _names_of(model: Any, geoms: Sequence[int]) -> tuple[str, ...]:
+    return tuple(str(model.geom(geom).name) for geom in geoms)
+
+
+def gap(model: Any, state: FloatArray, faces: Sequence[Sequence[str]]) -> float:
+    """Return the smallest distance (m) between two gripping faces, negative where they overlap."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = state
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    pairs = ((model.geom(one).id, model.geom(other).id) for one in faces[0] for other in faces[1])
+    return min(float(mujoco.mj_geomDistance(model, data, one, other, 1.0, None)) for one, other in pairs)
+
+
+def extent(model: Any, data: Any, name: str, axis: FloatArray) -> tuple[float, float]:
+    """Return the range (m) of a geom's bounding box along an axis of the world."""
+    geom = model.geom(name).id
+    box, turn = model.geom_aabb[geom], data.geom_xmat[geom].reshape(3, 3)
+    center = float((data.geom_xpos[geom] + turn @ box[:3]) @ axis)
+    half = float(np.abs(axis @ turn) @ box[3:])
+    return center - half, center + half
+
+
+def length_of(model: Any, joint: str) -> float:
+    """Return the distance (m) from a hinge to the farthest collision shape that it moves."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    found = model.joint(joint)
+    body = int(model.jnt_bodyid[found.id])
+    below = [g for g in range(model.ngeom) if body in _ancestors(model, int(model.geom_bodyid[g]))]
+    anchor = data.xanchor[found.id]
+    return max((float(np.linalg.norm(data.geom_xpos[geom] - anchor)) for geom in below), default=0.0)

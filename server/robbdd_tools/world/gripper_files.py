@@ -1,0 +1,241 @@
+"""Grippers of users' model files: their actuator, gripping faces and opening, as the file's own physics gives them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.api import GripperKind
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
+from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+SETTLING, STILL = 5000, 1e-3
+"""Largest number of steps of 2 ms in which a gripper opens or closes; speed (rad/s, m/s) of joints at rest."""
+CONTRADICTION = 0.25
+"""Share by which a stated stroke may differ from the measured one."""
+TIP = 0.015
+"""Distance (m) of the tool from the ends of the gripping faces, half the length of usual pads."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundGripper:
+    """A gripper in a model file.
+
+    - ``faces``: the names of the geoms of each gripping face.
+    - ``open`` and ``closed``: values of the ``actuator``.
+    - ``stroke``: the widest opening (m), or the diameter of a suction cup.
+    - ``rate``: change of the actuator's value per metre that a finger moves.
+    - ``settling``: how long (s) the fingers take from one end to the other.
+    - ``open_joints``: the positions of the gripper's joints when it is open.
+    - ``middle``, ``across``, ``ahead``: the place (m) between the closed fingers at their tips, the direction in which
+      they close and the one out of the hand, in the frame of the palm, shape (3,) each.
+    """
+
+    kind: GripperKind
+    actuator: str
+    faces: tuple[tuple[str, ...], ...]
+    open: float
+    closed: float
+    stroke: float
+    rate: float
+    settling: float
+    open_joints: tuple[tuple[str, float], ...]
+    middle: FloatArray
+    across: FloatArray
+    ahead: FloatArray
+
+    @property
+    def pads(self) -> tuple[str, ...]:
+        """The geoms of all gripping faces."""
+        return tuple(geom for face in self.faces for geom in face)
+
+
+class GripperReader:
+    """Reads the gripper of an arm; its description is completed where necessary."""
+
+    def __init__(self, parts: GripperParts) -> None:
+        self._parts = parts
+        self._source = parts.source
+        self._arm = parts.arm
+        self._palm = parts.palm
+        self._settling = 0.0
+
+    def read(self) -> FoundGripper:
+        """Return the gripper. Raises ``SceneError``."""
+        actuator = GripperActuator(self._parts).find()
+        if actuator.trntype == mujoco.mjtTrn.mjTRN_BODY:
+            return self._cup(actuator)
+        low, high = self._controls(actuator)
+        model = self._parts.compiled()
+        states = {control: self._settled(model, actuator, control) for control in (low, high)}
+        faces = self._given_faces(model) or self._found_faces(model, states)
+        gaps = {control: gap(model, state, faces) for control, state in states.items()}
+        opened, closed = self._senses(gaps)
+        return self._fingers(model, actuator, faces, (opened, closed), states, gaps)
+
+    def _controls(self, actuator: Any) -> tuple[float, float]:
+        """Return the two ends of the actuator's values."""
+        opened, closed = self._arm.open, self._arm.closed
+        low, high = (float(value) for value in actuator.ctrlrange)
+        if opened is None and closed is None and low >= high:
+            raise self._parts.error(
+                f"has an actuator '{actuator.name}' without a 'ctrlrange': state its values open and close"
+            )
+        if opened is None:
+            opened = low if closed == high else high
+        if closed is None:
+            closed = low if opened == high else high
+        if opened == closed:
+            raise self._parts.error(f"is open and closed at the same value, {opened:g}")
+        return min(opened, closed), max(opened, closed)
+
+    def _senses(self, gaps: dict[float, float]) -> tuple[float, float]:
+        """Return the values that open and close the gripper. Raises ``SceneError`` if they contradict the file."""
+        opened, closed = sorted(gaps, key=lambda control: -gaps[control])
+        stated = self._arm.open, self._arm.closed
+        described = "; ".join(f"{gaps[control]:.3f} m between its faces at {control:g}" for control in (opened, closed))
+        if gaps[opened] - gaps[closed] < MOVES:
+            raise self._parts.error(f"does not move its faces: {described}. Name other pads or another actuator")
+        if stated[0] not in (None, opened) or stated[1] not in (None, closed):
+            raise self._parts.error(f"has 'open' and 'close' reversed: {described}")
+        if gaps[closed] > NEVER_MEET:
+            raise self._parts.error(
+                f"has faces that never meet: {described}. Name other pads, or another value for close"
+            )
+        stroke = self._arm.stroke
+        if stroke and abs(stroke - gaps[opened]) > CONTRADICTION * gaps[opened]:
+            raise self._parts.error(f"opens {gaps[opened]:.3f} m, not the stated stroke of {stroke:.3f} m")
+        return opened, closed
+
+    def _face(self, name: str) -> Any:
+        return gripping_face(self._parts.spec, self._source, name)
+
+    def _given_faces(self, model: Any) -> tuple[tuple[str, ...], ...]:
+        names = [str(self._face(pad).name) for pad in self._arm.pads]
+        if any(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name) < 0 for name in names):
+            raise self._parts.error("has gripping faces without a collision shape")
+        return tuple((name,) for name in names)
+
+    def _found_faces(self, model: Any, states: dict[float, FloatArray]) -> tuple[tuple[str, ...], ...]:
+        bodies = [int(model.body(body.name).id) for body in self._parts.bodies]
+        faces = meeting_faces(model, bodies, states)
+        if not faces:
+            raise self._parts.error("has no two parts that meet when it closes: name its pads")
+        if self._source.format == "urdf":
+            for name in (name for face in faces for name in face):
+                make_rubber(self._parts.spec.geom(name))
+        return faces
+
+    def _settled(self, model: Any, actuator: Any, control: float) -> FloatArray:
+        """Return the joint positions of the whole model when the gripper has moved to a value of its actuator."""
+        data = mujoco.MjData(model)
+        model.opt.gravity[:] = 0.0
+        model.opt.timestep = 0.002
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        behind = {str(joint.name) for joint in self._parts.joints}
+        fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
+        places, speeds = model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
+        start = data.qpos[places].copy()
+        data.ctrl[model.actuator(actuator.name).id] = control
+        step = 0
+        for step in range(SETTLING):
+            mujoco.mj_step(model, data)
+            data.qpos[places], data.qvel[speeds] = start, 0.0
+            if step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
+                break
+        self._settling = max(self._settling, step * float(model.opt.timestep))
+        if not np.all(np.isfinite(data.qpos)):
+            raise self._parts.error("is unstable: its actuator moves it to infinity")
+        return data.qpos.copy()
+
+    def _fingers(
+        self,
+        model: Any,
+        actuator: Any,
+        faces: tuple[tuple[str, ...], ...],
+        controls: tuple[float, float],
+        states: dict[float, FloatArray],
+        gaps: dict[float, float],
+    ) -> FoundGripper:
+        opened, closed = controls
+        data = mujoco.MjData(model)
+        data.qpos[:] = states[closed]
+        mujoco.mj_kinematics(model, data)
+        palm = model.body(self._palm).id
+        place, turn = data.xpos[palm], data.xmat[palm].reshape(3, 3)
+        centers = [np.mean([data.geom_xpos[model.geom(name).id] for name in face], axis=0) for face in faces[:2]]
+        middle = np.mean(centers, axis=0)
+        data.qpos[:] = states[opened]
+        mujoco.mj_kinematics(model, data)
+        first, second = (np.mean([data.geom_xpos[model.geom(n).id] for n in face], axis=0) for face in faces[:2])
+        across = (first - second) / np.linalg.norm(first - second)
+        ahead = middle - place
+        ahead = ahead - (ahead @ across) * across
+        ahead = ahead / np.linalg.norm(ahead) if np.linalg.norm(ahead) > 1e-3 else turn[:, 2]
+        data.qpos[:] = states[closed]
+        mujoco.mj_kinematics(model, data)
+        reached = [extent(model, data, name, ahead) for face in faces[:2] for name in face]
+        bottom, top = min(low for low, _ in reached), max(high for _, high in reached)
+        depth = top - min(TIP, (top - bottom) / 2)
+        middle = middle + (depth - middle @ ahead) * ahead
+        behind = [str(joint.name) for joint in self._parts.joints]
+        positions = tuple((name, float(states[opened][model.joint(name).qposadr[0]])) for name in behind)
+        stroke = self._arm.stroke or gaps[opened]
+        travel = (gaps[opened] - max(0.0, gaps[closed])) / 2
+        return FoundGripper(
+            GripperKind.PARALLEL,
+            str(actuator.name),
+            faces,
+            opened,
+            closed,
+            stroke,
+            abs(opened - closed) / travel,
+            self._settling,
+            positions,
+            turn.T @ (middle - place),
+            turn.T @ across,
+            turn.T @ ahead,
+        )
+
+    def _cup(self, actuator: Any) -> FoundGripper:
+        body = self._parts.spec.body(str(actuator.target))
+        touching = [geom for geom in body.geoms if geom.contype or geom.conaffinity]
+        if not touching and not self._arm.pads:
+            raise self._parts.error(f"is a suction cup without a collision shape: '{body.name}' has none")
+        face = self._face(self._arm.pads[0]) if self._arm.pads else touching[-1]
+        model = self._parts.compiled()
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        geom, palm = model.geom(face.name).id, model.body(self._palm).id
+        turn = data.xmat[palm].reshape(3, 3)
+        place = data.geom_xpos[geom]
+        away = place - data.xpos[palm]
+        ahead = away / np.linalg.norm(away) if np.linalg.norm(away) > 1e-3 else turn[:, 2]
+        axes = data.geom_xmat[geom].reshape(3, 3)
+        axis = axes[:, 2] * np.sign(axes[:, 2] @ ahead or 1.0)
+        _, high = extent(model, data, str(face.name), axis)
+        size = model.geom_size[geom]
+        low_control, high_control = (float(value) for value in actuator.ctrlrange)
+        opened = self._arm.open if self._arm.open is not None else low_control
+        closed = self._arm.closed if self._arm.closed is not None else (high_control or 1.0)
+        return FoundGripper(
+            GripperKind.SUCTION,
+            str(actuator.name),
+            ((str(face.name),),),
+            opened,
+            closed,
+            self._arm.stroke or 2 * float(size[0]),
+            1.0,
+            0.0,
+            (),
+            turn.T @ (place + (high - place @ axis) * axis - data.xpos[palm]),
+            turn.T @ axes[:, 0],
+            turn.T @ axis,
+        )

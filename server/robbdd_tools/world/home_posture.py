@@ -1,0 +1,160 @@
+"""A home posture for arms whose file has none: the tool points down in front of the base, far from joint limits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.self_collision import NEAR
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.executable import ModelSource
+
+DOWN = np.cos(np.radians(20.0))
+"""Cosine of the angle to the vertical up to which a tool points down."""
+SEEDS = 40
+"""Random postures from which the search starts; they are the same in every run."""
+ROUNDS = 80
+CLOSE = 1e-3
+"""Pose error (m and rad) at which a posture is accepted."""
+DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15)
+"""Places of the tool: shares of the arm's reach ahead of the base, and heights (m) above it."""
+
+
+def find_home(
+    model: Any, source: ModelSource, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str
+) -> tuple[float, ...]:
+    """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best one of a search.
+
+    ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Raises ``SceneError`` if the
+    arm has no such posture.
+    """
+    search = _Search(model, joints, tool, fingers, palm)
+    for posture in search.key_frames():
+        if search.points_down(posture):
+            return tuple(posture.tolist())
+    found = max(search.postures(), key=search.score, default=None)
+    if found is None:
+        text = f"the arm in {source.name} cannot point its tool straight down in front of its base"
+        raise SceneError(f"{text}: check 'tool', or state 'home'", origin=source.origin)
+    return tuple(round(float(value), 6) for value in found)
+
+
+class _Search:
+    def __init__(self, model: Any, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str) -> None:
+        self._model = model
+        self._data: Any = mujoco.MjData(model)
+        for name, value in fingers.items():
+            self._data.qpos[model.joint(name).qposadr[0]] = value
+        self._site = model.site(tool).id
+        numbers = [model.joint(joint).id for joint in joints]
+        self._places, self._speeds = model.jnt_qposadr[numbers], model.jnt_dofadr[numbers]
+        limited = model.jnt_limited[numbers].astype(bool)
+        wide = np.where(model.jnt_type[numbers] == int(mujoco.mjtJoint.mjJNT_SLIDE), 1.0, np.pi)
+        self._low = np.where(limited, model.jnt_range[numbers, 0], -wide)
+        self._high = np.where(limited, model.jnt_range[numbers, 1], wide)
+        self._near = self._always_near(model.body(palm).id)
+
+    def key_frames(self) -> Iterator[FloatArray]:
+        """Yield the postures of the file's key frames, those called home first."""
+        named = sorted(range(self._model.nkey), key=lambda key: "home" not in str(self._model.key(key).name))
+        for posture in (self._model.key_qpos[key] for key in named):
+            values: FloatArray = posture[self._places]
+            if np.all((values >= self._low - 1e-6) & (values <= self._high + 1e-6)):
+                yield values.copy()
+
+    def points_down(self, posture: FloatArray) -> bool:
+        """Return whether the tool points down in a posture, in front of the base and free of self-collisions."""
+        place, turn = self._forward(posture)
+        return bool(-turn[2, 2] >= DOWN and place[0] > 0.1 and self._is_clear())
+
+    def postures(self) -> Iterator[FloatArray]:
+        """Yield the postures at the first of the places that the arm reaches."""
+        dice = np.random.default_rng(1)
+        span = np.minimum(self._high, np.pi) - np.maximum(self._low, -np.pi)
+        starts = np.maximum(self._low, -np.pi) + dice.random((SEEDS, len(self._low))) * span
+        reach = max(float(np.hypot(*self._forward(start)[0][:2])) for start in starts)
+        for height in HEIGHTS:
+            for share in DISTANCES:
+                goal = np.array([share * reach, 0.0, height])
+                found = [one for start in starts if (one := self._solved(start, goal)) is not None]
+                clear = [one for one in found if self._is_clear_at(one)]
+                if clear:
+                    yield from clear
+                    return
+
+    def score(self, posture: FloatArray) -> float:
+        """Return how far a posture is from its joint limits, as a share, and from a stretched arm."""
+        room = np.minimum(posture - self._low, self._high - posture) / (self._high - self._low)
+        self._forward(posture)
+        stretches: list[float] = np.linalg.svd(self._jacobian()[:3], compute_uv=False).tolist()
+        above = float(self._data.xpos[1:, 2].mean())
+        # An arm that bends upwards keeps its elbow off the table.
+        return float(np.min(room)) + stretches[-1] + above
+
+    def _forward(self, posture: FloatArray) -> tuple[FloatArray, FloatArray]:
+        self._data.qpos[self._places] = posture
+        mujoco.mj_kinematics(self._model, self._data)
+        return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
+
+    def _jacobian(self) -> FloatArray:
+        jacobian = np.zeros((6, self._model.nv))
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
+        return jacobian[:, self._speeds]
+
+    def _solved(self, start: FloatArray, goal: FloatArray) -> FloatArray | None:
+        """Return a posture with the tool at a place and pointing down, by damped least squares; ``None`` without one.
+
+        Any rotation about the vertical will do.
+        """
+        posture = start
+        for _ in range(ROUNDS):
+            place, turn = self._forward(posture)
+            tilt = np.cross(turn[:, 2], [0.0, 0.0, -1.0])
+            if turn[2, 2] > 0.0:
+                length = float(np.linalg.norm(tilt))
+                around: FloatArray = tilt / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+                tilt = around * (np.pi - np.arcsin(min(1.0, length)))
+            gap = np.concatenate([goal - place, tilt])
+            if np.abs(gap).max() < CLOSE:
+                return posture
+            jacobian = self._jacobian()
+            damped = jacobian @ jacobian.T + 1e-4 * np.eye(6)
+            step = jacobian.T @ np.linalg.solve(damped, gap)
+            step = step / max(1.0, float(np.abs(step).max()) / 0.3)
+            posture = np.clip(posture + step, self._low, self._high)
+        return None
+
+    def _is_clear_at(self, posture: FloatArray) -> bool:
+        self._forward(posture)
+        return self._is_clear()
+
+    def _is_clear(self) -> bool:
+        """Return whether no parts of the arm touch but those that are always near each other."""
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        bodies = self._model.geom_bodyid[self._data.contact.geom]
+        return all(self._near[one, other] for one, other in bodies.tolist())
+
+    def _always_near(self, palm: int) -> FloatArray:
+        """Return for each pair of bodies 1 if at most two joints are between them, or if both belong to the gripper."""
+        joints = self._model.body_jntnum
+        paths = [frozenset(self._path(body)) for body in range(self._model.nbody)]
+        return np.array(
+            [
+                [sum(int(joints[body]) for body in one ^ other) <= NEAR or palm in one & other for other in paths]
+                for one in paths
+            ]
+        )
+
+    def _path(self, body: int) -> Iterator[int]:
+        while body:
+            yield body
+            body = int(self._model.body_parentid[body])

@@ -1,0 +1,108 @@
+"""URDF files as their authors ship them: meshes of packages, missing visual meshes, unexpanded xacro."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+SCHEMES = ("package://", "model://")
+READABLE = (".stl", ".obj", ".msh")
+"""Mesh formats that the engine reads."""
+HIDDEN = 3
+"""Group of geoms that pictures leave out."""
+
+
+def is_urdf(path: Path) -> bool:
+    """Return whether a file is a URDF file or a xacro file, by its root element."""
+    try:
+        return ElementTree.fromstring(load_bytes(path)).tag == "robot"
+    except ElementTree.ParseError:
+        return False
+
+
+def read_urdf(path: Path) -> Any:
+    """Return the engine's editable description of a URDF file. Raises ``ValueError``.
+
+    Visual shapes are kept, except for meshes that are missing or that the engine cannot read. Each of the collision
+    meshes must be there.
+    """
+    root = ElementTree.fromstring(load_bytes(path))
+    if path.suffix == ".xacro" or any("xacro" in element.tag for element in root.iter()):
+        name = path.name.removesuffix(".xacro")
+        wanted = f"expand it ('xacro {path.name} > {Path(name).stem}.urdf') and name the result"
+        raise ValueError(f"it is a xacro file: {wanted}")
+    for link in root.iter("link"):
+        for kind in ("visual", "collision"):
+            for shape in link.findall(kind):
+                _use_mesh(path, link, shape)
+    if root.find("mujoco") is None:
+        settings = ElementTree.SubElement(root, "mujoco")
+        ElementTree.SubElement(settings, "compiler", {"discardvisual": "false", "strippath": "false"})
+    spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+    for body in spec.bodies:
+        shown = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
+        for geom in body.geoms if shown else ():
+            if geom.contype or geom.conaffinity:
+                geom.group = HIDDEN
+    return spec
+
+
+def speeds(path: Path) -> dict[str, float]:
+    """Return the speed limit (rad/s, m/s) of each joint of a URDF file; nothing for another file."""
+    try:
+        root = ElementTree.fromstring(load_bytes(path))
+    except ElementTree.ParseError:
+        return {}
+    found = {joint.get("name", ""): joint.find("limit") for joint in root.iter("joint") if root.tag == "robot"}
+    return {name: float(limit.get("velocity", 0.0)) for name, limit in found.items() if limit is not None}
+
+
+def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element) -> None:
+    """Replace a mesh's address by its path, or remove the shape if it is only seen. Raises ``ValueError``."""
+    mesh = shape.find("geometry/mesh")
+    if mesh is None:
+        return
+    name = mesh.get("filename", "")
+    found = next((one for one in _places(path, name) if one.is_file()), None)
+    problem = ""
+    if found is None:
+        problem = f"is not on this machine; looked for {', '.join(map(str, _places(path, name)))}"
+    elif found.suffix.lower() not in READABLE:
+        problem = "has a format that the simulator cannot read: convert it to STL or OBJ"
+    if found is not None and not problem:
+        mesh.set("filename", str(found))
+    elif shape.tag == "visual":
+        link.remove(shape)
+    else:
+        raise ValueError(f"the collision mesh '{name}' of the link '{link.get('name')}' {problem}")
+
+
+def _places(path: Path, name: str) -> Iterator[Path]:
+    """Yield possible places of a mesh: relative to the file, in ROS packages, or in a folder above the file."""
+    scheme = next((scheme for scheme in SCHEMES if name.startswith(scheme)), "")
+    if not scheme:
+        yield (path.parent / name.removeprefix("file://")).absolute()
+        return
+    package, _, inner = name.removeprefix(scheme).partition("/")
+    for prefix in _entries("AMENT_PREFIX_PATH"):
+        yield prefix / "share" / package / inner
+    for folder in _entries("ROS_PACKAGE_PATH"):
+        yield folder / package / inner
+        if folder.name == package:
+            yield folder / inner
+    for folder in path.absolute().parents:
+        if folder.name == package:
+            yield folder / inner
+        yield folder / package / inner
+
+
+def _entries(variable: str) -> list[Path]:
+    return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]

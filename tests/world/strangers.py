@@ -1,0 +1,118 @@
+"""Arms as others write them: their axes, drives and grippers differ from those of every example."""
+
+from __future__ import annotations
+
+import re
+
+_SOFT = 'friction="1 .01 .001" condim="4" solref=".005 1" solimp=".95 .99 .001"'
+
+SCARA = f"""<mujoco model="scara">
+<!-- Four axes, two of them torque-driven, one sliding, one without limits; an actuator for each finger. -->
+<compiler angle="radian" autolimits="true"/>
+<worldbody><body name="stand"><geom type="cylinder" size=".07 .2" pos="0 0 .2" mass="5"/>
+<body name="arm1" pos="0 0 .42"><joint name="a1" axis="0 0 1" range="-2.8 2.8" armature=".1"/>
+<geom type="capsule" size=".04" fromto="0 0 0 .45 0 0" mass="2"/>
+<body name="arm2" pos=".45 0 .06"><joint name="a2" axis="0 0 1" range="-2.6 2.6" armature=".1"/>
+<geom type="capsule" size=".035" fromto="0 0 0 .4 0 0" mass="1.5"/>
+<body name="quill" pos=".4 0 0"><joint name="z" type="slide" axis="0 0 -1" range="0 .42" armature=".5"/>
+<geom type="cylinder" size=".015 .15" mass=".5"/>
+<body name="flange" pos="0 0 -.16"><joint name="rot" axis="0 0 1" armature=".02"/>
+<geom type="box" size=".03 .05 .01" mass=".3"/>
+<body name="fa" pos="0 .003 -.06"><joint name="ja" type="slide" axis="0 1 0" range="0 .035" armature=".1" damping="5"/>
+<geom type="box" size=".01 .003 .02" pos="0 0 -.01" mass=".03" {_SOFT}/></body>
+<body name="fb" pos="0 -.003 -.06">
+<joint name="jb" type="slide" axis="0 1 0" range="-.035 0" armature=".1" damping="5"/>
+<geom type="box" size=".01 .003 .02" pos="0 0 -.01" mass=".03" {_SOFT}/></body>
+</body></body></body></body></body></worldbody>
+<actuator><motor joint="a1" gear="60" ctrlrange="-1 1"/><motor joint="a2" gear="60" ctrlrange="-1 1"/>
+<motor joint="z" ctrlrange="-300 300"/><velocity joint="rot" kv="5"/>
+<position name="ga" joint="ja" kp="2000" kv="50" forcerange="-20 20" ctrlrange="0 .035"/>
+<position name="gb" joint="jb" kp="2000" kv="50" forcerange="-20 20" ctrlrange="-.035 0"/></actuator></mujoco>"""
+
+
+def _finger(side: str, sign: int) -> str:
+    return (
+        f'<body name="{side}f" pos="0 {sign * 0.02} .03"><joint name="j{side}" axis="{sign} 0 0" range="-40 25" '
+        f'damping=".1" armature=".005"/><geom type="capsule" size=".006" fromto="0 0 0 0 {sign * 0.015} .06" '
+        'mass=".02"/>'
+        f'<geom name="{side}pad" type="box" size=".01 .004 .02" pos="0 {sign * 0.012} .08" mass=".02" {_SOFT}/></body>'
+    )
+
+
+_DRIVES = "".join(
+    f'<general joint="q{axis}" gainprm="{gain}" biastype="affine" biasprm="0 -{gain} -{gain // 10}"/>'
+    for axis, gain in enumerate((3000, 3000, 2000, 500, 500, 500), start=1)
+)
+SIX = f"""<mujoco model="six">
+<!-- Six axes in degrees, the first one downwards, two without limits; rotating fingers that a tendon closes at 255. -->
+<compiler angle="degree" autolimits="true"/><default><joint armature=".1" damping="1"/><geom mass=".5"/></default>
+<worldbody><light pos="0 0 3"/><geom type="plane" size="1 1 .1" pos="0 0 -0.2"/>
+<body name="b0"><geom type="cylinder" size=".08 .05" pos="0 0 .05"/>
+<body name="b1" pos="0 0 .1"><joint name="q1" axis="0 0 -1" range="-170 170"/>
+<geom type="cylinder" size=".06 .08" pos="0 0 .08"/>
+<body name="b2" pos="0 0 .2"><joint name="q2" axis="0 1 0" range="-110 110"/>
+<geom type="capsule" size=".05" fromto="0 0 0 0 0 .35"/>
+<body name="b3" pos="0 0 .38"><joint name="q3" axis="0 1 0" range="-150 150"/>
+<geom type="capsule" size=".04" fromto="0 0 0 0 0 .3"/>
+<body name="b4" pos="0 0 .34"><joint name="q4" axis="0 0 1"/><geom type="cylinder" size=".035 .03"/>
+<body name="b5" pos="0 0 .06"><joint name="q5" axis="0 1 0" range="-120 120"/><geom type="cylinder" size=".03 .03"/>
+<body name="b6" pos="0 0 .06"><joint name="q6" axis="0 0 1"/><geom type="box" size=".03 .06 .015" pos="0 0 .015"/>
+{_finger("l", 1)}{_finger("r", -1)}</body></body></body></body></body></body></body></worldbody>
+<tendon><fixed name="split"><joint joint="jl" coef=".5"/><joint joint="jr" coef=".5"/></fixed></tendon>
+<equality><joint joint1="jl" joint2="jr"/></equality>
+<actuator>{_DRIVES}<general name="fingers" tendon="split" ctrlrange="0 255" gainprm=".05" biastype="affine"
+ biasprm="-6 -12 -.2" forcerange="-4 4"/></actuator></mujoco>"""
+
+_CUP = '<body name="cup" pos="0 0 .06"><geom type="cylinder" size=".012 .03" mass=".05"/></body>'
+_BARE = re.sub(r"<tendon>.*</equality>|<general name=.fingers.*?/>", "", SIX, flags=re.DOTALL)
+CUP_ONLY = re.sub(r'<body name="lf".*?</body><body name="rf".*?</body>', _CUP, _BARE, flags=re.DOTALL)
+"""The same arm with the shape of a suction cup, but without a vacuum."""
+VACUUM = CUP_ONLY.replace("</actuator>", '<adhesion body="cup" ctrlrange="0 1" gain="30"/></actuator>')
+
+
+def _link(name: str, mass: float, shapes: str = "") -> str:
+    inertia = '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>'
+    return f'<link name="{name}"><inertial><mass value="{mass}"/>{inertia}</inertial>{shapes}</link>'
+
+
+def _box(size: str, at: str = "0 0 0") -> str:
+    return f'<collision><origin xyz="{at}"/><geometry><box size="{size}"/></geometry></collision>'
+
+
+def _joint(name: str, ends: str, kind: str, axis: str, at: str, limit: str, more: str = "") -> str:
+    parent, child = ends.split()
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin xyz="{at}"/>'
+        f'<axis xyz="{axis}"/><limit {limit} effort="400"/>{more}</joint>'
+    )
+
+
+MESH = '<visual><geometry><mesh filename="package://gantry_description/meshes/carriage.obj"/></geometry></visual>'
+GANTRY = "".join(
+    [
+        '<robot name="gantry">',
+        _link("rail", 20, _box("0.06 0.06 0.9", "-0.1 0 0.45")),
+        _link("bridge", 6, _box("0.1 1.3 0.06") + MESH),
+        _link("carriage", 3, _box("0.08 0.08 0.08")),
+        _link("column", 2, _box("0.04 0.04 0.5", "0 0 0.1")),
+        _link("hand", 0.5, _box("0.04 0.12 0.03")),
+        _link("thumb", 0.05, _box("0.02 0.008 0.03")),
+        _link("finger", 0.05, _box("0.02 0.008 0.03")),
+        _joint("x", "rail bridge", "prismatic", "1 0 0", "0.1 0 0.75", 'lower="0" upper="0.8" velocity="0.8"'),
+        _joint("y", "bridge carriage", "prismatic", "0 1 0", "0 0 0", 'lower="-0.7" upper="0.7" velocity="0.8"'),
+        _joint("z", "carriage column", "prismatic", "0 0 -1", "0 0 -0.2", 'lower="0" upper="0.5" velocity="0.5"'),
+        _joint("turn", "column hand", "continuous", "0 0 1", "0 0 -0.17", 'velocity="2.5"'),
+        _joint("grip", "hand thumb", "prismatic", "0 1 0", "0 0.004 -0.08", 'lower="0" upper="0.04" velocity="0.1"'),
+        _joint(
+            "follow",
+            "hand finger",
+            "prismatic",
+            "0 -1 0",
+            "0 -0.004 -0.08",
+            'lower="0" upper="0.04" velocity="0.1"',
+            '<mimic joint="grip"/>',
+        ),
+        "</robot>",
+    ]
+)
+"""Three sliding axes and a wrist in URDF, with a mimic joint and a visual mesh of a package that is not here."""

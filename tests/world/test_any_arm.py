@@ -1,0 +1,145 @@
+"""Arms that others model load as they are; what their files lack is reported with its place."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.api import GripperKind, RobotModel
+from robbdd_tools.catalog.executable import (
+    ArmModel,
+    Implementation,
+    ModelSource,
+    Origin,
+    Realisation,
+    SceneInstance,
+)
+from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.robot_files import robot_from
+from world import strangers
+from world.arms import MJCF
+from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
+
+ARM = "env:own"
+
+
+def source(folder: Path, text: str, arm: ArmModel | None = None, name: str = "") -> ModelSource:
+    is_urdf = text.startswith("<robot")
+    name = name or ("arm.urdf" if is_urdf else "arm.xml")
+    (folder / name).write_text(text, encoding="utf-8")
+    origin = Origin(str(folder / "cell.scenex"), 3, 7)
+    return ModelSource("x:arm", "urdf" if is_urdf else "mjcf", "file", name, arm=arm, origin=origin)
+
+
+def robot(folder: Path, text: str, arm: ArmModel | None = None, name: str = "") -> RobotModel:
+    return robot_from(source(folder, text, arm, name), ARM)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("text", [strangers.SCARA, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF])
+def test_an_arm_picks_and_places_with_the_data_in_its_file_alone(tmp_path: Path, text: str) -> None:
+    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(tmp_path, text),)),))
+    execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
+    spec = replace(scenario(replace(SCENE, agents=(ARM,)), 1), execution=execution)
+    run = Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
+    assert run.run_behaviour(0), run.trace.remark
+    (cube, _), (container, _) = run.simulation.pose(CUBE), run.simulation.pose("env:bin1")
+    assert abs(cube[:2] - container[:2]).max() < 0.15
+
+
+def test_the_fingers_of_two_actuators_are_one_gripper(tmp_path: Path) -> None:
+    found = robot(tmp_path, strangers.SCARA)
+    assert found.joints == ("a1", "a2", "z", "rot")
+    assert (found.gripper_actuator, found.gripper_open, found.gripper_closed) == ("ga", 0.035, 0.0)
+    assert found.stroke == pytest.approx(0.07, abs=1e-3)
+    assert dict(finger_motion(found).open_joints) == pytest.approx({"ja": 0.035, "jb": -0.035}, abs=1e-3)
+
+
+def test_a_gripper_that_opens_at_zero_and_closes_at_255_is_understood(tmp_path: Path) -> None:
+    found = robot(tmp_path, strangers.SIX)
+    assert (found.gripper_open, found.gripper_closed, found.pads) == (0.0, 255.0, ("lpad", "rpad"))
+    assert finger_motion(found).rate == pytest.approx(255 / (found.stroke / 2), rel=0.01)
+
+
+def test_a_mimic_joint_follows_and_the_speeds_of_a_urdf_file_count(tmp_path: Path) -> None:
+    found = robot(tmp_path, strangers.GANTRY)
+    assert found.joints == ("x", "y", "z", "turn")
+    assert found.velocity_limits == (0.8, 0.8, 0.5, 2.5)
+    assert (found.gripper_actuator, found.stroke) == ("grip", pytest.approx(0.08, abs=1e-3))
+
+
+def test_a_cup_is_found_by_its_vacuum_or_by_the_face_that_is_named(tmp_path: Path) -> None:
+    for text, arm in ((strangers.VACUUM, None), (strangers.CUP_ONLY, ArmModel(pads=("cup",), stroke=0.024))):
+        found = robot(tmp_path, text, arm)
+        assert found.gripper is GripperKind.SUCTION
+        assert (found.gripper_open, found.gripper_closed, found.stroke) == (0.0, 1.0, 0.024)
+
+
+def test_what_a_scene_states_replaces_what_the_file_says(tmp_path: Path) -> None:
+    stated = ArmModel(home=(0.0, -0.5, 0.1, 0.2), velocity=(1.0, 2.0, 3.0, 4.0), stroke=0.06)
+    found = robot(tmp_path, strangers.SCARA, stated)
+    assert (found.home, found.velocity_limits, found.stroke) == (stated.home, stated.velocity, 0.06)
+
+
+FACES = ArmModel(pads=("left_pad", "right_pad"))
+NEVER = MJCF.replace('range="0 0.04"', 'range="0.03 0.04"').replace('ctrlrange="-0.002 0.04"', 'ctrlrange="0.03 0.04"')
+
+
+@pytest.mark.parametrize(
+    ("text", "arm", "words"),
+    [
+        (strangers.CUP_ONLY, None, "has no gripper: beyond the body 'b6', the file has no joints and no actuators"),
+        (
+            MJCF,
+            replace(FACES, open=-0.002, closed=0.04),
+            "has 'open' and 'close' reversed: 0.080 m between its faces at",
+        ),
+        (MJCF, replace(FACES, stroke=0.15), "opens 0.080 m, not the stated stroke of 0.150 m"),
+        (MJCF, ArmModel(pads=("left_pad", "hand")), "the gripper of arm.xml"),
+        (
+            NEVER,
+            FACES,
+            "has faces that never meet: 0.080 m between its faces at 0.04; 0.060 m between its faces at 0.03",
+        ),
+        (MJCF, ArmModel(home=(0.0, 9.0, 0.0, 0.0, 0.0)), "the home position 9 of the joint 'shoulder' is outside its"),
+        (MJCF.replace('<body name="foot">', '<body name="foot"><freejoint/>'), None, "has a free joint 'joint0'"),
+        (strangers.GANTRY.replace("visual>", "collision>"), None, "the collision mesh 'package://gantry_description/"),
+    ],
+)
+def test_what_is_wrong_with_a_model_is_said_of_the_model(
+    tmp_path: Path, text: str, arm: ArmModel | None, words: str
+) -> None:
+    with pytest.raises(SceneError) as caught:
+        robot(tmp_path, text, arm)
+    assert str(caught.value).startswith("cell.scenex:3:7: ")
+    assert words in str(caught.value)
+
+
+def test_a_xacro_file_is_refused_with_the_command_that_expands_it(tmp_path: Path) -> None:
+    text = strangers.GANTRY.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    text = text.replace("</robot>", '<xacro:property name="a" value="1"/></robot>')
+    with pytest.raises(SceneError, match=r"it is a xacro file: expand it \('xacro arm.urdf.xacro > arm.urdf'\)"):
+        robot(tmp_path, text, name="arm.urdf.xacro")
+
+
+TETRAHEDRON = "v 0 0 0\nv .1 0 0\nv 0 .1 0\nv 0 0 .1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+
+
+@pytest.mark.parametrize("variable", ["AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH", ""])
+def test_meshes_of_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variable: str) -> None:
+    share = {"AMENT_PREFIX_PATH": "ros/share", "ROS_PACKAGE_PATH": "ros", "": ""}[variable]
+    mesh = tmp_path / share / "gantry_description" / "meshes" / "carriage.obj"
+    mesh.parent.mkdir(parents=True)
+    mesh.write_text(TETRAHEDRON, encoding="utf-8")
+    if variable:
+        monkeypatch.setenv(variable, str(tmp_path / "ros"))
+    text = re.sub(r"visual>", "collision>", strangers.GANTRY)
+    folder = tmp_path / "models" / "urdf"
+    folder.mkdir(parents=True)
+    assert robot(folder, text).joints == ("x", "y", "z", "turn")
