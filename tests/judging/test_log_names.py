@@ -43,6 +43,18 @@ def test_what_is_missing_is_named_with_what_there_is(element: str, stated: dict[
     assert words in str(caught.value)
 
 
+def test_a_log_without_frames_is_reported_and_long_lists_are_cut() -> None:
+    def problem(frames: tuple[str, ...]) -> str:
+        with pytest.raises(FramesProblem) as caught:
+            frame_of("env:screw", frames, {})
+        return str(caught.value)
+
+    begin, end = "the log has no frame for env:screw", "; name it with --frame screw=FRAME"
+    assert problem(()) == f"{begin}: it has no frames{end}"
+    assert problem(tuple("klmnopqji")) == f"{begin}; it has: i, j, k, l, m, n, o, p{end}"
+    assert problem(("scrow", "abc", "scrw")) == f"{begin}; nearest: scrw, scrow{end}"
+
+
 @pytest.mark.parametrize(
     "text", ["ex:evt-pick-end", "pick_ended", "PickEnd", " E_PICK_END ", "evt-pick-end", "grasped"]
 )

@@ -58,6 +58,29 @@ def test_an_evaluator_that_fails_has_no_range() -> None:
     assert ranges(broken, a_trace(), REGIONS) == ()
 
 
+def begun(ball: list[float], *behaviours: str, iterations: tuple[int, ...] = ()) -> bool | None:
+    """Return the message for a ball at some heights over the left bin; pick-start at 0.1 s, place-start at 0.2 s."""
+    calls = tuple(ClauseSpec(line, f"t:w{line}", f"w{line}", "when", text) for line, text in enumerate(behaviours))
+    stated = replace(STATED, iterations=iterations)
+    events = {"t:pick": "pick-start", "t:place": "place-start", "t:e": "place-end"}
+    stamps = (EventStamp("t:pick", 0.1), EventStamp("t:place", 0.2), EventStamp("t:e", 0.3))
+    still = heights([0.0] * len(ball))
+    trace = replace(trace_of({"ball": heights(ball), "bin1": still, "bin2": still}), events=stamps)
+    spec = scenario(clauses=(*calls, stated), events=events)
+    found = margin_ranges(4, read_clause(LEFT), stated, spec, trace, REGIONS)
+    return None if found is None else found.held_before
+
+
+def test_a_clause_is_compared_with_the_beginning_of_its_behaviour() -> None:
+    pick, place = '"arm" picks "ball"', '"arm" places "ball" at "left"'
+    assert begun([9, 0, 9, 0], pick, place) is True
+    assert begun([9, 9, 0, 0], pick, place) is False
+    assert begun([9, 0, 9, 0], place, pick) is False
+    assert begun([9, 9, 0, 0], place, pick) is True
+    assert begun([9, 0, 9, 0], pick, iterations=(1,)) is True
+    assert begun([9, 0, 9, 0], pick, iterations=(2,)) is None
+
+
 def held_before(ball: list[float], node: str, sentence: str = LEFT, role: str = "then") -> bool | None:
     """Return the message for a ball at some heights over the left bin; node at 0.1 s, event at 0.3 s."""
     events = (EventStamp("t:tree", 0.1), EventStamp("t:e", 0.3))

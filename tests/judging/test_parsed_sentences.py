@@ -61,6 +61,37 @@ def test_a_value_may_hold_anything() -> None:
     assert found.arguments["value"] == "0.9 of [the usual"
 
 
+@pytest.mark.parametrize(
+    ("written", "value"),
+    [
+        ("[the usual]", "[the usual]"),
+        (r"[a \"door\"]", '[a "door"]'),
+        ("any of [them]", "any of [them]"),
+        (r"\['a', 'b']", "['a', 'b']"),
+        ("any of 'a'", "any of 'a'"),
+        ("['a', 2]", ("a", "2")),
+        ("any of ['a']", AnyOf(("a",))),
+        ("[]", ()),
+    ],
+)
+def test_brackets_are_a_set_only_if_they_list_values(written: str, value: object) -> None:
+    assert fluent(f'"env:bin" has config "label" = "{written}" before event "t:e"').arguments["value"] == value
+
+
+def test_a_text_has_a_condition_if_the_catalog_states_it() -> None:
+    found = read_clause('the lamp is on whenever "env:cube" is held by "env:arm" after event "t:e"')
+    assert isinstance(found, Text)
+    assert (found.words, found.time) == ("the lamp is on", After("t:e"))
+    assert found.condition is not None
+    assert found.condition.predicate.name == "held-by"
+    assert found.condition.arguments == {"object": "env:cube", "agent": "env:arm"}
+    free = "the lamp is on whenever it rains"
+    assert read_clause(f'{free} after event "t:e"') == Text(free, After("t:e"))
+    again = read_clause(f'{free} whenever "env:cube" is held by "env:arm" before event "t:e"')
+    assert isinstance(again, Text)
+    assert (again.words, again.condition is None) == (free, False)
+
+
 def test_reads_nested_junctions() -> None:
     text = f'( {AT} after event "t:e" or not ( "env:cube" is held by "env:arm" after event "t:e" ) )'
     found = read_clause(text)
