@@ -219,3 +219,29 @@ def test_a_module_that_is_changed_is_read_again(tmp_path: Path) -> None:
     assert len(checked(model)) == 1
     (tmp_path / "mine.py").write_text("class Pick: ...\n# longer", encoding="utf-8")
     assert checked(model) == []
+
+
+@pytest.mark.parametrize(
+    ("module", "attribute", "source", "shown"),
+    [
+        ("mime", "Pick", "class Pick: ...", ("mime", "there is no module 'mime'; did you mean 'mine'?", "mine")),
+        ("mine", "Pck", "class Pick: ...", ("Pck", "the module 'mine' has no 'Pck'; did you mean 'Pick'?", "Pick")),
+    ],
+)
+def test_a_name_in_python_is_corrected(
+    module: str, attribute: str, source: str, shown: tuple[str, str, str], tmp_path: Path
+) -> None:
+    model = coded(tmp_path, source, module, attribute)
+    (found,) = checked(model)
+    text = model.read_text(encoding="utf-8")
+    assert (text[found.span.start : found.span.end], found.message) == shown[:2]
+    (fix,) = found.fixes
+    (edit,) = fix.edits
+    assert (fix.title, edit.uri, edit.span) == (f"Change to '{shown[2]}'", found.uri, found.span)
+    model.write_text(text[: edit.span.start] + edit.text + text[edit.span.end :], encoding="utf-8")
+    assert checked(model) == []
+
+
+def test_no_private_name_is_offered(tmp_path: Path) -> None:
+    (found,) = checked(coded(tmp_path, "class _Pick: ..."))
+    assert (found.message, found.fixes) == ("the module 'mine' has no 'Pick'", ())

@@ -117,6 +117,46 @@ def test_a_step_function_beside_the_graph_judges_a_text(tmp_path: Path) -> None:
     assert found(tmp_path, model) == {}
 
 
+def test_files_and_modules_are_looked_for_next_to_the_graph(tmp_path: Path) -> None:
+    scenex = """import "lab.scene"
+ns sim = 'https://example.org/sim/'
+scene inst (ns=sim) lab_sim { scene: <bench_scene>
+    obj <parts.cube_a> { model a_model as mjcf { sys path = "a.xml" } }
+    obj <parts.cube_b> { model b_model as mjcf { py { module: shapes, attr: Shape } } }
+}
+"""
+    bddx = """import "main.bdd"
+import "lab.scenex"
+ns x = 'https://example.org/x/'
+bhv impl (ns=x) own { py { module: mine, attr: Pick } }
+obs provider (ns=x) truth { simulation ground truth update-rate: 100 Hz }
+observation (ns=x) pose { provider: <truth> observes var <fetch.part> }
+obs policy (ns=x) near for <fetch.in-tray> { observations: { <pose> } evaluator: py { module: mine, attr: near } }
+Scenario Exec (ns=x) run { variant: <fetching.bench-to-tray> scene inst: <lab_sim> bhv: <own> policies: { <near> }
+    repeat: 1 seed: 1 timeout: 60 seconds }
+"""
+    case = fixture(f"//- run.bddx\n{bddx}//- main.bdd\n{CELL}//- lab.scenex\n{scenex}//- lab.scene\n{BENCH}")
+    path = tmp_path / "run.ttl"
+    path.write_text(serialize(build_graph(case.snapshot, case.uri).graph, "ttl"), encoding="utf-8")
+
+    def messages() -> list[str]:
+        found = robbdd.load(path).diagnostics
+        return sorted(one.message for one in found if one.code in ("python-source", "model-file"))
+
+    mine = "there is no module 'mine': put mine.py next to this file"
+    assert messages() == [
+        "'sim:lab_sim.a_model': the model file 'a.xml' is not on this machine: put it there, or change the path, "
+        "before a run with it",
+        "'sim:lab_sim.b_model': there is no module 'shapes': put shapes.py next to this file",
+        f"'x:near': {mine}",
+        f"'x:own': {mine}",
+    ]
+    (tmp_path / "a.xml").touch()
+    (tmp_path / "shapes.py").write_text("class Shape: ...\n", encoding="utf-8")
+    (tmp_path / "mine.py").write_text("class Pick: ...\n", encoding="utf-8")
+    assert messages() == ["'x:near': the module 'mine' has no 'near'"]
+
+
 def test_the_published_form_of_an_execution_is_read() -> None:
     """The bindings to ROS, the policies, and the scene instance that the execution itself does not name."""
     folder = corpus(".bddx")[0].parent.parent / "graphs"
