@@ -135,7 +135,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at"),
   phrases(`${PHRASE}.event`, "occurs"),
   { match: String.raw`(?<=>)\s*(at)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
-  phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever"),
+  phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever", "the first", "the last", "every"),
   phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
   phrases("keyword.operator.wordlike", "and", "or", "not"),
   phrases(`${WORD}.story`, "As A", "As An", "I Want", "So That"),

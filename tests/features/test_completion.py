@@ -98,6 +98,9 @@ def test_conditions_and_windows_are_offered_after_a_predicate() -> None:
     assert {"after", "at some time from", "before", "from", "within"} <= set(
         labels(edited("before <pick-start>", "$0"))
     )
+    assert {"every", "the"} <= {
+        label.split()[0] for label in labels(edited("before <pick-start>", "before $0 <pick-start>"))
+    }
     assert "is held by" in labels(edited("<goal>, before", "<goal> whenever <part> $0, before"))
 
 

@@ -98,6 +98,7 @@ def test_elements_tell_what_simulates_them() -> None:
             "at some time in the <part> s that end",
         ),
         ("before <pick-start>)", "with$0in 2 seconds before <pick-start>)", "at some time in the 2 s that end at"),
+        ("before <pick-start>)", "bef$0ore every <pick-start>)", "at the last sample at or before every `pick-start`."),
         ("before <pick-start>)", "at so$0me time from <pick-start> until <end>)", "it must hold at some time."),
     ],
 )

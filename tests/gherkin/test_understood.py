@@ -43,9 +43,10 @@ NAME, THING, PLACE, CHOICE = (Iri(f"x:{name}") for name in ("name", "thing", "pl
 TEXT = st.text(st.sampled_from("a \"'\\()[]|\n\u2028é"), max_size=8) | st.sampled_from(
     ["and", "or", "not ( a )", ") or (", "any of ['a']", "['a']", 'a" or "b', "x and y", "( a or b )", " "]
 )
+SELECTED = [After("x:e", which="every"), Before("x:e", 2.0, 0, True, "first"), After("x:e", 3.0, which="last")]
 SOME = [Before("x:e", 2.0, 0, True), After("x:e", 0.1, 0, True), During("x:a", "x:b", (0, 0), True)]
 TIMES: st.SearchStrategy[TimeConstraint] = st.sampled_from(
-    [Before("x:e"), After("x:e", 0.1), After("x:e", 1e-7), During("x:a", "x:b"), *SOME]
+    [Before("x:e"), After("x:e", 0.1), After("x:e", 1e-7), During("x:a", "x:b"), *SOME, *SELECTED]
 )
 CELLS: st.SearchStrategy[Cell] = TEXT | st.just(THING) | st.lists(TEXT, min_size=1, max_size=2).map(tuple)
 

@@ -71,6 +71,9 @@ Scenario Template (ns=t) sort {
         stays: holds(<parts> are sorted into <bins>, <wait> seconds after <end>)
         in-time: holds(<parts> are sorted into <bins>, within <wait> seconds before <end>)
         "calm" <wait> seconds after <end>
+        always-calm: holds(<parts> are sorted into <bins>, 1 seconds before every <place-end>)
+        calm-once: holds(<parts> are sorted into <bins>, within <wait> seconds after the first <pick-start>)
+        calm-at-last: holds(<parts> are sorted into <bins>, after the last <place-end>)
         fast: holds(it takes less than 12 s, from <start> until <end>)
 }
 User Story (ns=other_names) zz-first {

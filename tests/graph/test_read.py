@@ -134,12 +134,21 @@ def test_quantifiers_nest() -> None:
 
 
 def test_a_horizon_is_a_variable() -> None:
-    _, _, stays, in_time, text, _ = variant("product").template.clauses
+    _, _, stays, in_time, text, *_ = variant("product").template.clauses
     assert isinstance(stays, Fluent)
     assert isinstance(in_time, Fluent)
     assert isinstance(text, TextClause)
     assert [clause.seconds for clause in (stays, in_time, text)] == [Iri(f"{T}var-wait")] * 3
     assert (stays.time, in_time.time) == (After(f"{T}end"), Before(f"{T}end", some_time=True))
+
+
+def test_occurrences_of_events_are_selected() -> None:
+    times = {clause.time for clause in variant("product").template.clauses if isinstance(clause, Fluent)}
+    assert {
+        Before(f"{T}place-end", 1.0, which="every"),
+        After(f"{T}pick-start", some_time=True, which="first"),
+        After(f"{T}place-end", which="last"),
+    } <= times
 
 
 def test_a_variant_has_its_own_clauses_behind_the_templates() -> None:

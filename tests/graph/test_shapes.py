@@ -73,6 +73,7 @@ DAMAGE: dict[str, list[str]] = {
     "junction-operands": ["set t:not-fetch.given.2 rbw:operands ()"],
     "membership-scene": ["+ lab:bench_scene-scene-has-obj bdd:of-scene t:fetch-scene", "+ t:fetch-scene a bdd:Scene",
                          "+ lab:bench_scene-scene-has-obj bdd:of-scene t:sort-scene"],
+    "occurrence": ["- t:calm-once rbw:occurrence", "+ t:calm-once rbw:occurrence t:task"],
     "object-members": ["+ lab:bench_scene-scene-has-obj env:has-object lab:panda"],
     "object-value": [f"set {TABLE} bdd:rows ((lab:panda lab:panda lab:tray_ws 1 2 ()))"],
     "whenever-one": ["+ t:guarded rbw:whenever t:at"],

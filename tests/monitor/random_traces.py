@@ -14,7 +14,7 @@ from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.last_iteration import LAST
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation
 
@@ -74,6 +74,7 @@ class Story:
     pending: tuple[str, ...] = ()
     """Events whose last occurrence is unknown."""
     log: str = ""
+    finished: bool = True
 
     @property
     def trace(self) -> Trace:
@@ -81,7 +82,7 @@ class Story:
         found = trace_of({name: heights(path) for name, path in self.paths.items()})
         stamps = tuple(EventStamp(*event) for event in self.events)
         trace = Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
-        return replace(trace, executions=self.executions, pending=self.pending, log=self.log)
+        return replace(trace, executions=self.executions, pending=self.pending, log=self.log, finished=self.finished)
 
 
 def by_the_monitor(clause: Clause, story: Story) -> Verdict:
@@ -119,11 +120,26 @@ def stories(draw: st.DrawFn, *, events_on_samples: bool) -> Story:
     stamps = draw(st.lists(st.tuples(st.sampled_from(EVENTS), anywhere, st.sampled_from((0, *ITERATIONS))), max_size=8))
     executions = draw(st.dictionaries(st.sampled_from(EVENTS), st.integers(1, 3)))
     pending = draw(st.sets(st.sampled_from(EVENTS), max_size=1))
-    return Story(paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])), executions, tuple(pending))
+    finished = draw(st.booleans())
+    return Story(
+        paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])), executions, tuple(pending), finished=finished
+    )
 
 
 _EVENT = st.sampled_from(EVENTS)
 _HORIZON = st.none() | st.integers(0, 8).map(lambda steps: steps * STEP)
+
+
+_CHOICES = (
+    _EVENT,
+    _HORIZON,
+    st.just(0),
+    st.booleans(),
+    st.sampled_from(OCCURRENCES),
+    st.sampled_from([(0, 0), (1, 1), (1, 2), (2, 2), (0, LAST)]),
+)
+_SELECTED: st.SearchStrategy[TimeConstraint] = st.builds(Before, *_CHOICES) | st.builds(After, *_CHOICES)
+"""Time constraints that select occurrences of their event."""
 
 
 def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
@@ -144,7 +160,7 @@ DURATIONS: st.SearchStrategy[Clause] = st.builds(
 FLUENTS: st.SearchStrategy[Clause] = DURATIONS | st.builds(
     Holds,
     st.sampled_from(["x", "y", "missing"]),
-    _times((0, LAST, *ITERATIONS)),
+    _times((0, LAST, *ITERATIONS)) | _SELECTED,
     st.none() | st.sampled_from(["x", "y", "missing"]),
 )
 

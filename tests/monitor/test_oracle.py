@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 
 import pytest
@@ -41,6 +41,31 @@ def occurrence(story: Story, event: str, iteration: int) -> float | None:
     stamped = [(time, number) for name, time, number in story.events if name == event]
     times = [time for time, number in stamped if iteration == 0 or number == 0 or number == iteration]
     return min(times) if times else None
+
+
+def selected(story: Story, time: Before | After) -> list[float] | None:
+    """The times of the occurrences that 'the first', 'the last' or 'every' select in the clause's scope."""
+    low, high = time.scope
+    times = sorted(
+        t
+        for name, t, number in story.events
+        if name == time.event and (low == 0 or number == 0 or low <= number <= high)
+    )
+    if time.which == "first":
+        return times[:1] or None
+    if not story.finished or time.event in story.pending:
+        return None
+    return (times[-1:] if time.which == "last" else times) or None
+
+
+def at_occurrences(clause: Holds, story: Story, time: Before | After) -> Answer:
+    """The page's verdict on the selected occurrences: each one alone, joined by 'and'."""
+    times = selected(story, time)
+    if times is None:
+        return UNKNOWN
+    plain = type(time)(time.event, time.horizon, 0, time.some_time)
+    alone = [replace(story, events=((time.event, t, 0),), pending=(), executions={}) for t in times]
+    return joined("and", [fluent(replace(clause, time=plain), one) for one in alone])
 
 
 def in_window(time: TimeConstraint, story: Story, samples: list[float]) -> list[int] | None:
@@ -119,6 +144,8 @@ def whenever(guard: dict[int, float], margins: dict[int, float], samples: list[f
 
 
 def fluent(clause: Holds, story: Story) -> Answer:
+    if not isinstance(clause.time, During) and clause.time.which:
+        return at_occurrences(clause, story, clause.time)
     samples = [row * STEP for row in range(len(story.paths["x"]))]
     rows = in_window(clause.time, story, samples)
     if not rows or not {clause.thing, clause.condition or "x"} <= story.paths.keys():
@@ -152,7 +179,7 @@ def duration(clause: Takes, story: Story) -> Answer:
     if begin is None or uncertain or (end is not None and end < begin):
         return UNKNOWN
     left = begin + clause.limit - ((samples - 1) * STEP if end is None else end)
-    if end is None and (story.log or left >= 0):
+    if end is None and (story.log or not story.finished or left >= 0):
         return UNKNOWN
     until = (samples - 1) * STEP if end is None else end
     return Answer("holds", left, until, until) if left >= 0 else Answer("violated", left, begin + clause.limit, until)
@@ -172,17 +199,20 @@ def answer(clause: Clause, story: Story) -> Answer:
             margin = None if inner.margin is None else -inner.margin
             return Answer(outcome, margin, inner.worst, inner.worst)
         case Joined(operator, parts):
-            answers = [answer(part, story) for part in parts]
-            order = ("violated", "unknown", "holds")
-            ranks = [order.index(one.outcome) for one in answers] or [1]
-            outcome = order[min(ranks) if operator == "and" else max(ranks)]
-            if outcome == "unknown":
-                return UNKNOWN
-            margins = [one.margin for one in answers if one.margin is not None and one.outcome == outcome]
-            if not margins:
-                return Answer(outcome)
-            decisive = min(margins) if operator == "and" else max(margins)
-            return next(one for one in answers if one.margin == decisive and one.outcome == outcome)
+            return joined(operator, [answer(part, story) for part in parts])
+
+
+def joined(operator: str, answers: list[Answer]) -> Answer:
+    order = ("violated", "unknown", "holds")
+    ranks = [order.index(one.outcome) for one in answers] or [1]
+    outcome = order[min(ranks) if operator == "and" else max(ranks)]
+    if outcome == "unknown":
+        return UNKNOWN
+    margins = [one.margin for one in answers if one.margin is not None and one.outcome == outcome]
+    if not margins:
+        return Answer(outcome)
+    decisive = min(margins) if operator == "and" else max(margins)
+    return next(one for one in answers if one.margin == decisive and one.outcome == outcome)
 
 
 @settings(max_examples=500)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from math import floor
 from typing import Any
@@ -10,7 +11,18 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from monitor.random_traces import EVENTS, OBSERVED, Clause, Holds, Joined, Story, Takes, by_the_monitor, stories
+from monitor.random_traces import (
+    EVENTS,
+    ITERATIONS,
+    OBSERVED,
+    Clause,
+    Holds,
+    Joined,
+    Story,
+    Takes,
+    by_the_monitor,
+    stories,
+)
 from monitor.traces import STEP
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.monitor.verdict import Outcome
@@ -43,6 +55,9 @@ def formula(clause: Clause) -> str:
 
 
 def when(time: TimeConstraint) -> str:
+    if not isinstance(time, During) and time.which == "every":
+        # Each occurrence has its own iteration there.
+        return f"({' or '.join(when(replace(time, which='', iteration=number)) for number in ITERATIONS)})"
     match time:
         case Before(event, horizon, k):
             return f"(eventually{steps(horizon)} ({event}{k} >= 0))"
@@ -103,6 +118,8 @@ def test_robustness_is_that_of_signal_temporal_logic(clause: Clause, story: Stor
         Before("a", 0.2, 2, some_time=True),
         After("a", 0.2, 1, some_time=True),
         During("a", "b", (1, 2), some_time=True),
+        Before("a", None, which="every"),
+        After("a", 0.1, which="every"),
     ],
 )
 def test_every_kind_of_window_is_compared(time: TimeConstraint) -> None:

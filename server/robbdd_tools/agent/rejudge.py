@@ -174,7 +174,7 @@ def decided_on_trace(
 
 def _beyond(time: TimeConstraint, trace: Trace) -> str:
     """Return the reason why a window is not within a trace; empty if it is, or if its event did not occur."""
-    if not isinstance(time, After | Before):
+    if not isinstance(time, After | Before) or time.which:
         return ""
     at, horizon = trace.event_time(time.event, time.iteration), time.horizon or 0.0
     if at is None:

@@ -111,7 +111,7 @@ def _time_words(time: tree.TimeConstraint) -> str:
         return interval_words("x", "x", time.some_time)
     relation = "before" if isinstance(time, tree.Before) else "after"
     seconds = f"{time.horizon.value:g}" if isinstance(time.horizon, tree.Number) else time.horizon and "1"
-    return instant_words(relation, "x", seconds, time.some_time)
+    return instant_words(relation, "x", seconds, time.some_time, time.which)
 
 
 def sample_sentence(text: str, time: str, condition: str | None = None) -> str:

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.protocol.time_words import occurrence_words
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def time_words(time: tree.TimeConstraint) -> str:
     word = "before" if isinstance(time, tree.Before) else "after"
     lead = "at some time within " if time.some_time else "for "
     horizon = "" if time.horizon is None else f"{lead}{_seconds(time.horizon)} seconds "
-    return f"{horizon}{word} {time.event.path}"
+    return f"{horizon}{word} {occurrence_words(time.which)}{time.event.path}"
 
 
 def time_meaning(time: tree.TimeConstraint) -> str:
@@ -40,15 +41,16 @@ def time_meaning(time: tree.TimeConstraint) -> str:
         return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold {must}."
     side = "at or before" if isinstance(time, tree.Before) else "at or after"
     which = "last" if isinstance(time, tree.Before) else "first"
+    event = f"{occurrence_words(time.which)}`{time.event.path}`"
     if time.horizon is None:
-        return f"Judged at the {which} sample {side} `{time.event.path}`."
+        return f"Judged at the {which} sample {side} {event}."
     ends = "that end at" if isinstance(time, tree.Before) else "that begin at"
     if time.some_time:
         return (
-            f"It must hold at some time in the {_seconds(time.horizon)} s {ends} `{time.event.path}`. The margin is "
+            f"It must hold at some time in the {_seconds(time.horizon)} s {ends} {event}. The margin is "
             "the largest in this time; the result says when it first held and how much time was left."
         )
-    return f"Judged throughout the {_seconds(time.horizon)} s {ends} `{time.event.path}`."
+    return f"Judged throughout the {_seconds(time.horizon)} s {ends} {event}."
 
 
 def _seconds(horizon: tree.Number | tree.Ref) -> str:

@@ -211,7 +211,8 @@ class Binder:
         event = self.curie(time.end if isinstance(time, During) else time.event)
         seconds = "?" if value is None else word(self.filler(value))
         relation = "before" if isinstance(time, Before) else "after"
-        ending = instant_words(relation, event, seconds, time.some_time)
+        which = "" if isinstance(time, During) else time.which
+        ending = instant_words(relation, event, seconds, time.some_time, which)
         return stated.Text(f"{words}{condition_words(condition)} {ending}", None, clause.iri)
 
     def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:

@@ -152,7 +152,7 @@ def _time(clause: Fluent | TextFluent | TextClause) -> str:
         return interval_words("{start}", "{end}", constraint.some_time)
     relation = "before" if isinstance(constraint, Before) else "after"
     seconds = None if constraint.horizon is None and clause.seconds is None else "{seconds:g}"
-    return instant_words(relation, "{event}", seconds, constraint.some_time)
+    return instant_words(relation, "{event}", seconds, constraint.some_time, constraint.which)
 
 
 def _pattern(role: str, sentence: str) -> Pattern:

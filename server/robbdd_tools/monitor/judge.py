@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from robbdd_tools.monitor.durations import NOT_AN_INTERVAL, judge_duration
-from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, closing_time, window
+from robbdd_tools.monitor.time import (
+    TOLERANCE,
+    During,
+    NoWindow,
+    TimeConstraint,
+    Window,
+    closing_time,
+    occurrence_times,
+    window,
+)
 from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.vacuity import Range
-from robbdd_tools.monitor.verdict import EMPTY_WINDOW, NEVER_APPLIED, Cause, Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import EMPTY_WINDOW, NEVER_APPLIED, Cause, Outcome, Verdict, conjunction, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -221,6 +230,12 @@ def judge(
     *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an
     argument.
     """
+    if not isinstance(constraint, During) and constraint.which == "every" and not constraint.number:
+        times = occurrence_times(constraint, trace)
+        if isinstance(times, NoWindow):
+            return unknown(times.reason, Cause.NO_EVENT)
+        each = (replace(constraint, number=number) for number in range(1, len(times) + 1))
+        return conjunction(judge(predicate, arguments, one, trace, regions, condition) for one in each)
     for judged in (predicate, *(() if condition is None else condition[:1])):
         if judged.evaluate is None:
             return unknown(f"there is no evaluator for '{judged.name}'", Cause.NO_STEP)

@@ -14,31 +14,45 @@ TOLERANCE = 1e-9
 """Seconds; sample times are sums of floating-point steps."""
 
 
+OCCURRENCES = ("first", "last", "every")
+"""Words that select occurrences of an event."""
+
+
 @dataclass(frozen=True, slots=True)
 class Before:
     """At the last sample at or before ``event``, or throughout the ``horizon`` (s) that ends at it.
 
     ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``. ``some_time`` is true if the
     predicate must hold at some sample of the window instead of at all of them.
+
+    ``which`` is one of ``OCCURRENCES``, or empty. If it is set, it selects among all occurrences in the iterations
+    ``scope``, as in ``Trace.event_times``, and ``iteration`` does not count. ``number`` (from 1) is one occurrence of
+    *every*.
     """
 
     event: str
     horizon: float | None = None
     iteration: int = 0
     some_time: bool = False
+    which: str = ""
+    scope: tuple[int, int] = (0, 0)
+    number: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class After:
     """At the first sample at or after ``event``, or throughout the ``horizon`` (s) that starts at it.
 
-    ``iteration`` and ``some_time`` have the same meaning as in ``Before``.
+    The other fields have the same meaning as in ``Before``.
     """
 
     event: str
     horizon: float | None = None
     iteration: int = 0
     some_time: bool = False
+    which: str = ""
+    scope: tuple[int, int] = (0, 0)
+    number: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,16 +106,35 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
     - ``from a until b`` selects all samples in ``[t_a, t_b]``.
     """
     match constraint:
-        case Before(event, horizon, iteration):
-            return _pending(constraint, trace) or _before(trace, event, horizon, iteration)
-        case After(event, horizon, iteration):
-            return _pending(constraint, trace) or _after(trace, event, horizon, iteration)
+        case Before() | After():
+            times = occurrence_times(constraint, trace)
+            if isinstance(times, NoWindow):
+                return times
+            # The window of *every* occurrence is that of the first one; ``judge`` judges them one by one.
+            time = times[max(constraint.number - 1, 0)]
+            return (
+                _before(trace, constraint, time) if isinstance(constraint, Before) else _after(trace, constraint, time)
+            )
         case During():
             found = interval(constraint, trace)
             if isinstance(found, NoWindow):
                 return found
             begin, finish = found
             return _closed(trace.first_at_or_after(begin - TOLERANCE), trace.last_at_or_before(finish + TOLERANCE))
+
+
+def occurrence_times(constraint: Before | After, trace: Trace) -> tuple[float, ...] | NoWindow:
+    """Return the times (s) of the occurrences of its event to which a time constraint refers; at least one."""
+    if not constraint.which:
+        time = trace.event_time(constraint.event, constraint.iteration)
+        missing = _missing(trace, constraint.event, constraint.iteration)
+        return _pending(constraint, trace) or (missing if time is None else (time,))
+    times = trace.event_times(constraint.event, constraint.scope)
+    if constraint.which != "first" and (not trace.finished or constraint.event in trace.pending):
+        return _uncertain(trace, constraint.event)
+    if not times:
+        return _missing(trace, constraint.event, 0)
+    return {"first": times[:1], "last": times[-1:]}.get(constraint.which, times)
 
 
 def interval(constraint: During, trace: Trace) -> tuple[float, float] | NoWindow:
@@ -131,11 +164,14 @@ def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
 
 def closing_time(constraint: TimeConstraint, trace: Trace) -> float | None:
     """Return the time (s) at which the window of a time constraint closes; ``None`` if its event has not occurred."""
-    event, iteration = occurrences(constraint)[-1]
-    time = trace.event_time(event, iteration)
-    if time is None or not isinstance(constraint, After):
-        return time
-    return time + (constraint.horizon or 0.0)
+    if isinstance(constraint, During):
+        event, iteration = occurrences(constraint)[-1]
+        return trace.event_time(event, iteration)
+    times = occurrence_times(constraint, trace)
+    if isinstance(times, NoWindow):
+        return None
+    horizon = constraint.horizon if isinstance(constraint, After) else None
+    return times[max(constraint.number - 1, 0)] + (horizon or 0.0)
 
 
 def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
@@ -143,13 +179,16 @@ def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, 
 
     ``iterations`` are the first and the last iteration of the clause's scope; empty if the clause is not in a loop. An
     interval extends over the whole scope. Any other constraint of a Given or When clause (``role``) refers to the first
-    iteration, and that of a Then clause to the last one (see "Occurrences" in ``docs/semantics.md``).
+    iteration, and that of a Then clause to the last one, unless it selects occurrences in the
+    scope itself (see "Occurrences" in ``docs/semantics.md``).
     """
     if not iterations:
         return constraint
     first, last = iterations[0], iterations[-1]
     if isinstance(constraint, During):
         return replace(constraint, iterations=(first, last))
+    if constraint.which:
+        return replace(constraint, scope=(first, last))
     return replace(constraint, iteration=last if role == "then" else first)
 
 
@@ -157,17 +196,17 @@ def _pending(constraint: TimeConstraint, trace: Trace) -> NoWindow | None:
     """Return the reason why a trace has no window yet: its last event may occur again."""
     for event, iteration in occurrences(constraint):
         if iteration == LAST and event in trace.pending:
-            reason = (
-                f"the execution ended at {trace.end:.2f} s, before it was certain that event {event} is the last one"
-            )
-            return NoWindow(reason, not trace.finished)
+            return _uncertain(trace, event)
     return None
 
 
-def _before(trace: Trace, event: str, horizon: float | None, iteration: int) -> Window | NoWindow:
-    time = trace.event_time(event, iteration)
-    if time is None:
-        return _missing(trace, event, iteration)
+def _uncertain(trace: Trace, event: str) -> NoWindow:
+    reason = f"the execution ended at {trace.end:.2f} s, before it was certain that event {event} is the last one"
+    return NoWindow(reason, not trace.finished)
+
+
+def _before(trace: Trace, constraint: Before, time: float) -> Window | NoWindow:
+    event, horizon = constraint.event, constraint.horizon
     last = trace.last_at_or_before(time + TOLERANCE)
     if horizon is None:
         return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False, True)
@@ -177,10 +216,8 @@ def _before(trace: Trace, event: str, horizon: float | None, iteration: int) -> 
     return _closed(trace.first_at_or_after(time - horizon - TOLERANCE), last)
 
 
-def _after(trace: Trace, event: str, horizon: float | None, iteration: int) -> Window | NoWindow:
-    time = trace.event_time(event, iteration)
-    if time is None:
-        return _missing(trace, event, iteration)
+def _after(trace: Trace, constraint: After, time: float) -> Window | NoWindow:
+    horizon = constraint.horizon
     first = trace.first_at_or_after(time - TOLERANCE)
     end = time + (horizon or 0.0)
     if first >= len(trace.times) or trace.times[-1] < end - TOLERANCE:

@@ -120,6 +120,20 @@ class Trace:
         stamps = (stamp for stamp in self.events if stamp.name == name)
         return min((stamp.time for stamp in stamps if not iteration or stamp.iteration in counted), default=None)
 
+    def event_times(self, name: str, scope: tuple[int, int] = (0, 0)) -> tuple[float, ...]:
+        """Return the times of all occurrences of an event, in order.
+
+        ``scope`` are the first and the last iteration that count, besides occurrences outside of all iterations. All
+        iterations count if the first one is 0.
+        """
+        first, last = scope
+        stamps = (stamp for stamp in self.events if stamp.name == name)
+        return tuple(
+            sorted(
+                stamp.time for stamp in stamps if not first or not stamp.iteration or first <= stamp.iteration <= last
+            )
+        )
+
     def first_at_or_after(self, time: float) -> int:
         """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` if there is none."""
         return int(np.searchsorted(self.times, time, side="left"))

@@ -191,7 +191,9 @@ def _filler(value: Any) -> Filler:
 
 
 def _plain_time(time: TimeConstraint) -> dict[str, Any]:
-    some_time = {"some_time": True} if time.some_time else {}
+    some_time: dict[str, Any] = {"some_time": True} if time.some_time else {}
+    if not isinstance(time, During) and time.which:
+        some_time["which"] = time.which
     match time:
         case During(start, end):
             return {"from": start, "until": end, **some_time}
@@ -204,13 +206,13 @@ def _plain_time(time: TimeConstraint) -> dict[str, Any]:
 def _time(data: Mapping[str, Any] | None) -> TimeConstraint | None:
     if data is None:
         return None
-    some_time = bool(data.get("some_time", False))
+    some_time, which = bool(data.get("some_time", False)), str(data.get("which", ""))
     match data:
         case {"from": str(start), "until": str(end)}:
             return During(start, end, some_time=some_time)
         case {"before": str(event), "horizon": horizon}:
-            return Before(event, horizon, some_time=some_time)
+            return Before(event, horizon, some_time=some_time, which=which)
         case {"after": str(event), "horizon": horizon}:
-            return After(event, horizon, some_time=some_time)
+            return After(event, horizon, some_time=some_time, which=which)
         case _:
             raise ValueError(f"{data!r} is not a time constraint")

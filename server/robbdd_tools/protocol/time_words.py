@@ -19,7 +19,7 @@ HEADER = f"# wording: {WORDING}"
 """The line of a feature that states the version of its sentences."""
 TIME = (
     r"(?:(?:(?P<lead>for|at some time within|within) (?P<horizon>\d+(?:\.\d+)?(?:e[+-]?\d+)?) seconds )?"
-    r'(?P<relation>before|after) event "(?P<event>[^"]*)"'
+    r'(?P<relation>before|after) (?:(?:the )?(?P<which>first|last|every) )?event "(?P<event>[^"]*)"'
     r'|(?P<some>at some time )?from "(?P<start>[^"]*)" until "(?P<end>[^"]*)")'
 )
 """A time constraint at the end of a sentence, in any wording."""
@@ -44,9 +44,9 @@ def time_words(constraint: TimeConstraint) -> str:
         case During(start, end):
             return interval_words(start, end, constraint.some_time)
         case Before(event, horizon):
-            return instant_words("before", event, _seconds(horizon), constraint.some_time)
+            return instant_words("before", event, _seconds(horizon), constraint.some_time, constraint.which)
         case After(event, horizon):
-            return instant_words("after", event, _seconds(horizon), constraint.some_time)
+            return instant_words("after", event, _seconds(horizon), constraint.some_time, constraint.which)
 
 
 def interval_words(start: str, end: str, some_time: bool) -> str:
@@ -54,10 +54,15 @@ def interval_words(start: str, end: str, some_time: bool) -> str:
     return f'{"at some time " if some_time else ""}from "{start}" until "{end}"'
 
 
-def instant_words(relation: str, event: str, seconds: str | None, some_time: bool) -> str:
+def occurrence_words(which: str | None) -> str:
+    """Return the words before an event that select its occurrences; empty if none are selected."""
+    return "" if not which else f"{which} " if which == "every" else f"the {which} "
+
+
+def instant_words(relation: str, event: str, seconds: str | None, some_time: bool, which: str | None = "") -> str:
     """Return the words for a constraint ``before`` or ``after`` an event, with its horizon as text if it has one."""
     lead = "" if seconds is None else f"{'at some time within' if some_time else 'for'} {seconds} seconds "
-    return f'{lead}{relation} event "{event}"'
+    return f'{lead}{relation} {occurrence_words(which)}event "{event}"'
 
 
 def constraint_of(match: re.Match[str]) -> TimeConstraint:
@@ -66,7 +71,8 @@ def constraint_of(match: re.Match[str]) -> TimeConstraint:
         return During(match["start"], match["end"], some_time=match["some"] is not None)
     horizon = float(match["horizon"]) if match["horizon"] is not None else None
     kind = Before if match["relation"] == "before" else After
-    return kind(match["event"], horizon, some_time=match["lead"] == "at some time within")
+    some_time = match["lead"] == "at some time within"
+    return kind(match["event"], horizon, some_time=some_time, which=match["which"] or "")
 
 
 def _seconds(horizon: float | None) -> str | None:

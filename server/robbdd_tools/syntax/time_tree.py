@@ -18,19 +18,24 @@ class During(Node):
 
 @dataclass(frozen=True, slots=True)
 class Before(Node):
-    """``[[within] h seconds] before <event>``; ``h`` is a number or a variable. ``some_time``: after ``within``."""
+    """``[[within] h seconds] before [the first | the last | every] <event>``. ``h`` is a number or a variable.
+
+    ``some_time`` is true after ``within``. ``which`` is the word ``first``, ``last`` or ``every``.
+    """
 
     some_time: bool
     horizon: Number | Ref | None
+    which: str | None
     event: Ref
 
 
 @dataclass(frozen=True, slots=True)
 class After(Node):
-    """``[[within] h seconds] after <event>``; ``h`` is a number or a variable. ``some_time``: after ``within``."""
+    """``[[within] h seconds] after [the first | the last | every] <event>``, with the same parts as ``Before``."""
 
     some_time: bool
     horizon: Number | Ref | None
+    which: str | None
     event: Ref
 
 

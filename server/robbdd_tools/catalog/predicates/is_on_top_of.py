@@ -36,7 +36,8 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     gap = np.abs(np.min(own[:, :, 2] - own_radii[:, None], axis=0) - top)
     placed = np.minimum(footprint, center[:, 2] - top)
     touching = contact_force(evidence, arguments) >= FAINTEST
-    return np.where(touching, placed, np.minimum(placed, -np.maximum(gap, APART)))
+    apart: FloatArray = np.minimum(placed, -np.maximum(gap, APART))
+    return np.where(touching, placed, apart)
 
 
 IS_ON_TOP_OF = Predicate(

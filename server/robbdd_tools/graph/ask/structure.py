@@ -12,10 +12,11 @@ from itertools import chain
 
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import COMPOSITES, HORIZON_VARIABLE, SOME_TIME
+from robbdd_tools.graph.rdf.vocabulary import COMPOSITES, HORIZON_VARIABLE, OCCURRENCE, SOME_TIME
 from robbdd_tools.graph.read.variable_roles import words_of
 from robbdd_tools.graph.write.built import BuiltGraph
 from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.protocol.time_words import occurrence_words
 
 JOINED = {
     "rbw:Conjunction": "all of",
@@ -186,7 +187,7 @@ class _Reader:
         if before and after:
             return (f"from {self._name(after[0])} until {self._name(before[0])}",)
         return tuple(
-            f"{span}{word} {self._name(event)}"
+            f"{span}{word} {occurrence_words(records.text(node, OCCURRENCE))}{self._name(event)}"
             for word, events in (("before", before), ("after", after))
             for event in events
         )

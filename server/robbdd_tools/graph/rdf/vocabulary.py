@@ -41,6 +41,7 @@ TIME_TYPES = {
 QUANTITY = "https://w3id.org/cdt/ucum"
 """Datatype of a number with a unit (Custom Datatypes, https://w3id.org/cdt/)."""
 SOME_TIME = "rbw:AtSomeTime"
+OCCURRENCE = "rbw:occurrence"
 HORIZON_VARIABLE = "rbw:horizon-variable"
 """Class of a time constraint that must hold at some time in its window instead of throughout."""
 ELEMENT_TYPES = {"object": "env:Object", "workspace": "env:Workspace", "agent": "agn:Agent"}

@@ -22,8 +22,8 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, SOME_TIME, expand
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, expand
+from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
     from rdflib.term import Node
@@ -140,13 +140,15 @@ class ClauseReader:
         before, after = (self.records.all(iri, f"time:{side}-event") for side in ("before", "after"))
         horizon = self.records.literal(iri, "time:horizon-seconds")
         seconds = float(horizon) if isinstance(horizon, int | float) else None
-        some_time = self.records.is_a(iri, SOME_TIME)
+        some_time, which = self.records.is_a(iri, SOME_TIME), self.records.text(iri, OCCURRENCE)
+        if which not in ("", *OCCURRENCES) or (which and before and after):
+            raise Incomplete(f"{iri} selects occurrences '{which}' of an event")
         if before and after:
             start, end = self.records.one(iri, "time:after-event"), self.records.one(iri, "time:before-event")
             return During(start, end, some_time=some_time)
         if before:
-            return Before(self.records.one(iri, "time:before-event"), seconds, some_time=some_time)
-        return After(self.records.one(iri, "time:after-event"), seconds, some_time=some_time)
+            return Before(self.records.one(iri, "time:before-event"), seconds, some_time=some_time, which=which)
+        return After(self.records.one(iri, "time:after-event"), seconds, some_time=some_time, which=which)
 
     def _seconds(self, iri: Iri) -> Iri | None:
         """Return the variable of a clause's horizon, if any."""

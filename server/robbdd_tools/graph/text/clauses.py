@@ -24,6 +24,7 @@ from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
+from robbdd_tools.protocol.time_words import occurrence_words
 
 _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 
@@ -83,7 +84,8 @@ class ClauseText:
         seconds = seconds if variable is None else self._variable(variable)
         horizon = f"{seconds} seconds " if seconds else ""
         horizon = f"within {horizon}" if horizon and time.some_time else horizon
-        return f"{horizon}{'before' if isinstance(time, Before) else 'after'} {self._event(time.event)}"
+        relation = "before" if isinstance(time, Before) else "after"
+        return f"{horizon}{relation} {occurrence_words(time.which)}{self._event(time.event)}"
 
     def _event(self, event: str) -> str:
         return self.names.lazily(event, "event")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, SOME_TIME, TIME_TYPES
+from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, TIME_TYPES
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
@@ -243,6 +243,8 @@ def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
         sink.add(node, "time:before-event", frame.target(time.end), frame.at(time.end))
         return
     sink.add(node, f"time:{kind}-event", frame.target(time.event), frame.at(time.event))
+    if time.which:
+        sink.add(node, OCCURRENCE, sink.literal(time.which), frame.at(time.event))
     if isinstance(time.horizon, tree.Ref):
         sink.add(node, HORIZON_VARIABLE, frame.target(time.horizon), frame.at(time.horizon))
     elif time.horizon is not None:
