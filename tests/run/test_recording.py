@@ -283,6 +283,31 @@ def test_a_run_folder_that_was_not_copied_is_missed(store: RunStore) -> None:
         run.record()
 
 
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "UPDATE clause SET ranges = '[[1, 2], ['",
+        "UPDATE clause SET ranges = 'null'",
+        "UPDATE clause SET verdict = 'perhaps'",
+        "UPDATE execution SET contacts = '{\"at\": 1}'",
+        "UPDATE execution SET contacts = 'x'",
+        "UPDATE clause SET robustness = 'large'",
+        "INSERT INTO fault (run, id, shared, content) VALUES (1, 'f', 0, '{}')",
+    ],
+)
+def test_a_damaged_value_makes_its_run_unreadable_and_no_other_one(store: RunStore, damage: str) -> None:
+    place = store.begin()
+    with closing(begun(place)) as recording:
+        for message in execution(0):
+            recording.take(message)
+        leave(recording, place)
+    with closing(sqlite3.connect(store.database)) as connection, connection:
+        connection.execute(damage)
+    with pytest.raises(NoSuchRun, match=r"results\.sqlite: is damaged: run 1 cannot be read: "):
+        place.results()
+    assert run_whole(store).results()["scenarios"]
+
+
 @pytest.mark.parametrize("damage", ["header", "middle"])
 def test_a_damaged_database_is_moved_aside_and_older_results_are_read(store: RunStore, damage: str) -> None:
     whole, died = run_whole(store), store.begin()

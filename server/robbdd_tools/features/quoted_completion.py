@@ -38,12 +38,14 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
     if match is not None:
         folder, _, last = match[1].rpartition("/")
         for name, kind in _entries(uri, folder and f"{folder}/", wanted):
-            yield name, kind, last, urljoin(uri, quote(f"{folder}/{name}" if folder else name))
+            # On the disk, a name may be bytes that are no UTF-8; what is typed may be half a character.
+            above = f"{quote(folder, errors='surrogatepass')}/" if folder else ""
+            yield name, kind, last, urljoin(uri, above + quote(name, errors="surrogateescape"))
 
 
 def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:
     """Yield the folders in a folder (ending in ``/``) and its files with the given extensions, as relative paths."""
-    own, place = uri_to_path(uri), uri_to_path(urljoin(uri, quote(folder) or "./"))
+    own, place = uri_to_path(uri), uri_to_path(urljoin(uri, quote(folder, errors="surrogatepass") or "./"))
     if own is None or place is None:
         return
     for entry in _listed(place):

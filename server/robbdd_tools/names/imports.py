@@ -35,17 +35,17 @@ def import_uri(importer: str, path: str) -> str:
     path with backslashes, the URI is one that ``not_a_path`` recognises, and nothing is read from there.
     """
     if _ADDRESSES.match(path) or BACKSLASH in path:
-        return f"{_ADDRESS}{quote(path)}"
+        return f"{_ADDRESS}{quote(path, errors='surrogatepass')}"
     drive = drive_uri(path)
     if drive is not None:
         return drive
     package, colon, inside = path.partition(":")
     # A package's code must not run: only its path is looked up. A single letter is a drive, which POSIX does not have.
     if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
-        return urljoin(importer, quote(path))
+        return urljoin(importer, quote(path, errors="surrogatepass"))
     folder = _package_folder(package)
     if folder is None:
-        return f"{_PACKAGE}{quote(package)}/{quote(inside)}"
+        return f"{_PACKAGE}{quote(package)}/{quote(inside, errors='surrogatepass')}"
     return path_to_uri(folder / inside.lstrip("/"))
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.fault import Fault
-from robbdd_tools.monitor.verdict import Cause
+from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import explained, read_database
@@ -24,6 +24,8 @@ CAUSES = {STOPPED: Cause.STOPPED, INTERRUPTED: Cause.CANCELLED}
 """State of a run → cause of its missing executions."""
 DIED = "died"
 """State of a run that is ``RUNNING`` in the database but whose lock is free."""
+_JUDGED = ("line", "verdict", "robustness", "unit", "at", "reason", "worst_at", "vacuous", "fault", "cause", "operand")
+"""Columns of a clause that are fields of ``ClauseJudged``."""
 _ENDINGS = {
     RUNNING: "not executed yet: the run is in progress",
     DIED: "the run ended without notice",
@@ -132,6 +134,14 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
 
 def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
     """Return the finished executions of a run as results, to which more can be added. Raises ``sqlite3.Error``."""
+    try:
+        return _restored(connection, number, manifest)
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        # SQLite finds damaged pages, but not damaged values in them.
+        raise sqlite3.DatabaseError(f"run {number} cannot be read: {error}") from error
+
+
+def _restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
     results = RunResults(manifest)
     faults = connection.execute("SELECT shared, content FROM fault WHERE run = ? ORDER BY id", (number,))
     for shared, content in faults:
@@ -148,17 +158,19 @@ def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) ->
         if index >= len(manifest.scenarios):
             continue
         spec = manifest.scenarios[index]
-        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, cause, operand,
-            ranges, held_before
+        query = f"""SELECT {", ".join(_JUDGED)}, ranges, held_before
             FROM clause WHERE execution = ? ORDER BY position"""
         known = {clause.line for clause in spec.clauses}
         touched = tuple(from_plain(Contact, one) for one in json.loads(contacts))
-        for line, *judged, ranges, held_before in connection.execute(query, (identifier,)):
-            if line in known:
-                results.apply(ClauseJudged(index, line, *judged))
+        for *judged, ranges, held_before in connection.execute(query, (identifier,)):
+            clause = from_plain(ClauseJudged, {"index": index, **dict(zip(_JUDGED, judged, strict=True))})
+            if clause.line in known:
+                Outcome(clause.verdict)  # raises ValueError
+                results.apply(clause)
                 if ranges is not None:
                     held = None if held_before is None else bool(held_before)
-                    results.apply(MarginRanges(index, line, json.loads(ranges), held))
+                    given = {"index": index, "line": clause.line, "ranges": json.loads(ranges), "held_before": held}
+                    results.apply(from_plain(MarginRanges, given))
         results.scenarios[index].printed = printed
         results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled, touched))
     return results

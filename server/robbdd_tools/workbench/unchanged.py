@@ -22,7 +22,9 @@ def model_now(place: StoredRun) -> Model | str:
         model = load_all(paths)
         _ = model.runnable
     except RobbddError as error:
-        return f"the model of the run, {shown}, cannot be run in its current state: {error}"
+        return (
+            f"the model of the run, {shown}, cannot be run in its current state: {'; '.join(str(error).splitlines())}"
+        )
     return model
 
 
