@@ -138,3 +138,12 @@ def test_what_is_reached_goes_through_every_edge() -> None:
     assert reached(edges, "a") == {"b", "c", "d", "e"}
     assert reached_from(edges, ["b", "x"]) == {"b", "d", "x", "y"}
     assert reached(edges, "y") == frozenset()
+
+
+@pytest.mark.parametrize("path", ["\ud800.scene", "x/\udfff.scene", "pkg:\udcff.scene", "//h/\ud800"])
+def test_half_a_character_in_an_import_is_a_diagnostic(path: str) -> None:
+    uri, project = "file:///a/main.bdd", Project()
+    project.open(uri, 1, f'import "{path}"\n')
+    file = project.snapshot().file(uri)
+    assert file is not None
+    assert [found.code for found in file.diagnostics if found.code == "import"] == ["import"]
