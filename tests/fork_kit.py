@@ -27,6 +27,13 @@ def forked(code: str) -> list[str]:
     return launch_command(_ADDRESS, code)
 
 
+def run_file(path: Path) -> list[str]:
+    """Return the command that runs a Python file in a fork."""
+    if not CAN_FORK:
+        return [sys.executable, str(path)]
+    return forked(f"import runpy; runpy.run_path({str(path)!r}, run_name='__main__')")
+
+
 def _command(module: str) -> list[str]:
     if not CAN_FORK:
         return [sys.executable, "-m", module]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from collections.abc import AsyncIterator
 from concurrent.futures import Future
 from pathlib import Path
@@ -15,6 +14,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from fork_kit import run_file
 from lsp_kit import CLIENTS, PATIENCE, Editor, begin_session
 from robbdd_tools.lsp.assistance import STILL_READING
 
@@ -25,7 +25,7 @@ TOKENS = types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL
 
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
-    config=ClientServerConfig(server_command=[sys.executable, str(PLANTED)]),
+    config=ClientServerConfig(server_command=run_file(PLANTED)),
 )
 async def client(
     request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, asked: list[str]

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from fork_kit import ROBBDD_LSP
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.interruptible_input import CAN_INTERRUPT
 from robbdd_tools.base.limits import MESSAGE_SIZE
@@ -50,8 +51,7 @@ def contents(data: bytes) -> list[bytes]:
 
 def session(*parts: bytes | Message) -> tuple[int, list[Message], str]:
     """Return the exit code, the messages and the log of a server that gets each request after the last answer."""
-    command = [sys.executable, "-m", "robbdd_tools.lsp.main"]
-    with subprocess.Popen(command, stdin=PIPE, stdout=PIPE, stderr=PIPE) as server:
+    with subprocess.Popen(ROBBDD_LSP, stdin=PIPE, stdout=PIPE, stderr=PIPE) as server:
         assert server.stdin is not None
         assert server.stdout is not None
         assert server.stderr is not None
@@ -184,7 +184,30 @@ def test_exit_ends_the_process_while_its_work_hangs() -> None:
         [sys.executable, "-c", hanging], input=data, capture_output=True, timeout=PATIENCE, check=False
     )
     assert done.returncode == 0
-    assert b"a thread is still running" in done.stderr
+    assert b"work is still running" in done.stderr
+
+
+def test_the_end_of_the_input_ends_the_process_while_a_task_refuses_to_end() -> None:
+    stubborn = (
+        "import asyncio, sys\n"
+        "from robbdd_tools.lsp import main, transport\n"
+        "from robbdd_tools.lsp.stored_verdicts import StoredVerdicts\n"
+        "async def refuse(self):\n"
+        "    while True:\n"
+        "        try:\n"
+        "            await asyncio.sleep(3600)\n"
+        "        except asyncio.CancelledError:\n"
+        "            pass\n"
+        "StoredVerdicts.load = refuse\n"
+        "transport.end_soon.__defaults__ = (0.1,)\n"
+        "sys.exit(main.main([]))\n"
+    )
+    data = b"".join(map(framed, (INITIALIZE, INITIALIZED)))
+    done = subprocess.run(
+        [sys.executable, "-c", stubborn], input=data, capture_output=True, timeout=PATIENCE, check=False
+    )
+    assert done.returncode == 1
+    assert b"work is still running" in done.stderr
 
 
 def test_exit_ends_the_process_at_once_while_the_client_keeps_its_end_open() -> None:
@@ -199,7 +222,7 @@ def test_exit_ends_the_process_at_once_while_the_client_keeps_its_end_open() -> 
         server.stdin.flush()
         log = server.stderr.read()
         assert server.wait(PATIENCE) == 0
-        assert b"a thread is still running" not in log
+        assert b"work is still running" not in log
 
 
 @pytest.mark.skipif(not CAN_INTERRUPT, reason="a read can be interrupted where there is 'poll'")

@@ -27,6 +27,7 @@ from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.test_tree import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
+from robbdd_tools.lsp.transport import end_after_loop
 from robbdd_tools.lsp.trust import forbid_user_code
 from robbdd_tools.lsp.user_errors import register_user_errors
 from robbdd_tools.lsp.watching import register_watching, watch_files
@@ -69,6 +70,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.trusted = able.get("trusted") is not False
         if not ls.trusted:
             forbid_user_code()
+        ls.spawn(end_after_loop(ls.exit_code))
         # All methods registered so far are announced to the client.
         if can_pull(params.capabilities):
             register_pull(ls)

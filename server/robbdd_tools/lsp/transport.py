@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import re
 import threading
+from collections.abc import Callable
 from typing import IO, BinaryIO, Protocol, cast
 
 from robbdd_tools.base.limits import MESSAGE_SIZE
@@ -108,15 +110,27 @@ def bounded(stream: IO[bytes], timer: HeaderTimer | None = None) -> BinaryIO:
 
 
 def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
-    """End the process with an exit code within some seconds, even if a thread or a worker hangs."""
+    """End the process with an exit code within some seconds, even if a thread, a task or a worker hangs."""
 
     def end() -> None:
-        _LOG.error("a thread is still running %g s after the end of the session: ending the process", seconds)
+        _LOG.error("work is still running %g s after the end of the session: ending the process", seconds)
         os._exit(code)
 
     timer = threading.Timer(seconds, end)
     timer.daemon = True
     timer.start()
+
+
+async def end_after_loop(code: Callable[[], int]) -> None:
+    """Make sure that the process ends soon after the event loop, whether by ``exit``, Ctrl-C or the client's end.
+
+    The loop waits for its tasks, and one that is starting a process may never end (CPython 3.11). ``code`` returns the
+    exit code.
+    """
+    try:
+        await asyncio.Event().wait()
+    finally:
+        end_soon(code())
 
 
 class RefusalFilter(logging.Filter):
