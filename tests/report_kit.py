@@ -21,11 +21,10 @@ HEADING = "//== reported\n"
 """Begins the expected report below the text of a fixture."""
 ACCEPT = "ROBBDD_ACCEPT"
 """Environment variable: when set, the reports are written anew; read what changed before you commit it."""
-OF_CATALOG = ("catalog-models", "no-model")
-"""Codes of findings that list what the catalog has; of their messages only names are reported."""
 MOST_FIXES = 2
 """Fixes of a finding that are shown: there may be one for each word of the catalog."""
-_NAMED = re.compile(r"'[^']*'")
+_WORDS = re.compile(r"(?<=none of the words )[^;]*")
+"""The words of the catalog's models, in the message on an element without a model."""
 
 
 def check_report(path: Path, report: Callable[[Fixture], Iterator[str]] | None = None) -> None:
@@ -45,10 +44,8 @@ def reported(case: Fixture) -> Iterator[str]:
 
 
 def _finding(case: Fixture, entry: Diagnostic) -> Iterator[str]:
-    message = " ".join(_NAMED.findall(entry.message)) if entry.code in OF_CATALOG else entry.message
     yield heading(case, entry)
-    if message:
-        yield f"  {message}"
+    yield f"  {message_of(entry)}"
     for related in entry.related:
         yield f"  see {place(case, related.uri, related.span)} {related.message}"
     for fix in fixes_of(case, entry)[:MOST_FIXES]:
@@ -58,6 +55,11 @@ def _finding(case: Fixture, entry: Diagnostic) -> Iterator[str]:
 def heading(case: Fixture, entry: Diagnostic) -> str:
     """Return code, severity and place of a finding."""
     return f"{entry.code} {entry.severity.name.lower()} {place(case, entry.uri, entry.span)}"
+
+
+def message_of(entry: Diagnostic) -> str:
+    """Return the message of a finding; without the words that the catalog happens to have."""
+    return _WORDS.sub("…", entry.message)
 
 
 def _changes(case: Fixture, fix: Fix) -> Iterator[str]:

@@ -11,7 +11,7 @@ import pytest
 
 from checks.models import apply, fixes_of
 from kit import Fixture, fixture
-from report_kit import HEADING, OF_CATALOG, check_report, heading, reported
+from report_kit import HEADING, check_report, heading, message_of, reported
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.checks import DECLARATION_RULES, FILE_RULES
 from robbdd_tools.checks.graph_files import graph_findings
@@ -26,17 +26,14 @@ ON_DISK = {"python-source", "model-file"}
 
 
 def text_and_graph(case: Fixture) -> Iterator[str]:
-    """Yield the report on a fixture, then the findings on the graph of its first file.
-
-    Elements without a model have no message there: ``test_graph_files.py`` checks it.
-    """
+    """Yield the report on a fixture, then the findings on the graph of its first file."""
     yield from reported(case)
     found = groupby(graph_findings(build_graph(case.snapshot, case.uri)), lambda entry: heading(case, entry))
     for position, (line, entries) in enumerate(found):
         if position == 0:
             yield "//== reported of the graph"
         yield line
-        yield from (f"  {entry.message}" for entry in islice(entries, MOST_AT_A_PLACE) if entry.code not in OF_CATALOG)
+        yield from (f"  {message_of(entry)}" for entry in islice(entries, MOST_AT_A_PLACE))
 
 
 @pytest.mark.parametrize("path", REPORTS, ids=lambda path: path.stem)
@@ -60,7 +57,7 @@ def test_a_fix_removes_its_finding_and_breaks_no_syntax() -> None:
         for entry in before:
             for fix in fixes_of(case, entry):
                 kind = entry.code, re.sub(r"'[^']*'", "", fix.title)
-                if entry.code in (*OF_CATALOG, *ON_DISK) or kind in kinds:
+                if entry.code in ON_DISK or kind in kinds:
                     continue
                 kinds.add(kind)
                 changed = fixture(text)
