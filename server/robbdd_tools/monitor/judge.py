@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from robbdd_tools.monitor.durations import NOT_AN_INTERVAL, judge_duration
+from robbdd_tools.monitor.sample_verdicts import at_some_time, throughout, whenever
 from robbdd_tools.monitor.time import (
     TOLERANCE,
     During,
@@ -21,7 +22,7 @@ from robbdd_tools.monitor.time import (
 )
 from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.vacuity import Range
-from robbdd_tools.monitor.verdict import EMPTY_WINDOW, NEVER_APPLIED, Cause, Outcome, Verdict, conjunction, unknown
+from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Verdict, conjunction, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 NOT_THROUGHOUT = "'whenever' needs a time constraint that says throughout, not 'at some time'"
-NOT_A_NUMBER = "the margin is not a number at some sample"
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 """Workspace → its regions, each with the object whose frame it is in."""
 
@@ -266,10 +266,10 @@ def judge(
     except Unobserved as gap:
         return unknown(str(gap), Cause.UNOBSERVED)
     if applies is not None:
-        return _verdict_whenever(margins, applies, evidence.times, unit)
+        return whenever(margins, applies, evidence.times, unit)
     if constraint.some_time:
-        return _some_time_verdict(margins, evidence.times, unit, closing_time(constraint, trace), missing)
-    return _verdict(margins, evidence.times, unit)
+        return at_some_time(margins, evidence.times, unit, closing_time(constraint, trace), missing)
+    return throughout(margins, evidence.times, unit)
 
 
 def _unit(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> str:
@@ -300,60 +300,3 @@ def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regio
         return None
     finite = margins[np.isfinite(margins)]
     return (float(finite.min()), float(finite.max())) if finite.size > 1 else None
-
-
-def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:
-    if not np.all(np.isfinite(margins)):
-        return unknown(NOT_A_NUMBER, Cause.NO_RECORD)
-    worst = int(np.argmin(margins))
-    robustness, worst_at = float(margins[worst]), float(times[worst])
-    if robustness >= 0:
-        return Verdict(Outcome.HOLDS, robustness, unit, worst_at, worst_at=worst_at)
-    first = int(np.argmax(margins < 0))
-    return Verdict(Outcome.VIOLATED, robustness, unit, float(times[first]), worst_at=worst_at)
-
-
-def _some_time_verdict(
-    margins: FloatArray, times: FloatArray, unit: str, closing: float | None, missing: NoWindow | None
-) -> Verdict:
-    """Return the verdict on a predicate that must hold at some sample.
-
-    ``closing`` is the time (s) at which the window closes. ``missing`` is set if the trace lacks a part of the window.
-    Then, and if some margin is not a number, the verdict is unknown unless the predicate already holds at some sample.
-    """
-    finite = np.isfinite(margins)
-    best = int(np.argmax(np.where(finite, margins, -np.inf)))
-    robustness, best_at = float(margins[best]), float(times[best])
-    if finite[best] and robustness >= 0:
-        first = float(times[int(np.argmax(finite & (margins >= 0)))])
-        left = "" if closing is None else f", {max(closing - first, 0.0):.2f} s before the window closes"
-        return Verdict(Outcome.HOLDS, robustness, unit, first, f"first held at {first:.2f} s{left}", best_at)
-    if missing is not None:
-        return unknown(missing.reason, Cause.NO_EVENT)
-    if not np.all(finite):
-        return unknown(NOT_A_NUMBER, Cause.NO_RECORD)
-    end = float(times[-1])
-    reason = f"it held at no time until {end:.2f} s, and was closest at {best_at:.2f} s"
-    return Verdict(Outcome.VIOLATED, robustness, unit, end, reason, best_at)
-
-
-def _verdict_whenever(margins: FloatArray, condition: FloatArray, times: FloatArray, unit: str) -> Verdict:
-    """Return the verdict on a predicate that must hold at the samples at which a condition holds.
-
-    ``condition`` are the margins of the condition, shape (n,). At each sample, the clause is the strong Kleene
-    implication of the condition and the predicate. A margin that is not a number is unknown.
-    """
-    known, held = np.isfinite(margins), np.isfinite(margins) & (margins >= 0)
-    maybe = ~(np.isfinite(condition) & (condition < 0))
-    surely = np.isfinite(condition) & (condition >= 0)
-    violated = surely & known & ~held
-    if not np.any(violated):
-        undecided = maybe & ~held
-        if np.any(undecided):
-            row = int(np.argmax(undecided))
-            reason = NOT_A_NUMBER if surely[row] else f"its condition is not known at {times[row]:.2f} s"
-            return unknown(reason, Cause.NO_RECORD)
-        if not np.any(maybe):
-            return Verdict(Outcome.HOLDS, reason=NEVER_APPLIED, vacuous=NEVER_APPLIED)
-    rows = surely & known if np.any(violated) else maybe
-    return _verdict(margins[rows], times[rows], unit)
