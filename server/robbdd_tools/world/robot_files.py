@@ -16,6 +16,7 @@ from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
 from robbdd_tools.world.home_posture import find_home
 from robbdd_tools.world.model_files import compiled, load, velocity_limits
+from robbdd_tools.world.urdf_files import HIDDEN
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -219,7 +220,7 @@ def _tool(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, pa
     frame = np.column_stack([np.cross(across, ahead), across, ahead if kept is None else kept])
     quaternion: FloatArray = np.empty(4)
     mujoco.mju_mat2Quat(quaternion, frame.ravel())
-    palm.add_site(name=TOOL, pos=place, quat=quaternion)
+    palm.add_site(name=TOOL, pos=place, quat=quaternion, group=HIDDEN)
     return TOOL
 
 
