@@ -44,6 +44,7 @@ def changed(old: str, new: str) -> str:
         ),
         (changed("<robot> picks <part>", "robot picks <part>"), "robot", "names must be in angle brackets"),
         (changed("after <place-end>", "after place-end"), "place-end", "names must be in angle brackets"),
+        (changed("after <place-end>", "after last <place-end>"), "last", "write 'the' before it"),
         (changed("after <place-end>", "after event <place-end>"), "event", "leave out 'event' here"),
         (changed("0.5 seconds after", "0.5 s after"), "s", "write the unit as 'seconds'"),
         (changed("task: <task>", "task: <task>;"), ";", "no line ends with ';'"),

@@ -64,6 +64,7 @@ _NEAR_MISSES = (
     NearMiss(r"\bset\s+\Z", r"var\b", "variables are declared before 'Given:': move it there", ":"),
     NearMiss(r"\bnot\s+\Z", _NAME, "'not' and its clause need parentheses: '( not name: holds(…) )'", ":"),
     NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
+    NearMiss(r"\b(?:before|after)\s+\Z", r"(?:first|last)\b(?=\s*<)", "write 'the' before it", "the", "the {}".format),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
     NearMiss(r"", rf"(?!not\b|pred\b|holds\b){_NAME}\s*(?=\(\s*<)", _OWN_PREDICATE, "<"),
     NearMiss(rf"(?<![\w\-.<])(?!(?:Given|When|Then)\b){_NAME}\s*\Z", r"\((?=\s*<)", _OWN_PREDICATE, ":"),
@@ -127,4 +128,4 @@ def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) ->
 
 def _may_be_anything(rejected: Rejected) -> bool:
     """Return whether so many texts are allowed at a place that the intended one is uncertain."""
-    return len(rejected.expected.literals - {"pred"}) > 2
+    return len(rejected.expected.literals - {"pred", "the", "every"}) > 2
