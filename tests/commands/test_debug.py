@@ -82,14 +82,14 @@ def model(tmp_path: Path) -> Path:
 def debugged(model: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """A run that waits for a debugger, and its port."""
     port = free_port()
-    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(model), "--first", "1", "--debug", str(port)]
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(model), "--debug", str(port), "--first", "2"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, encoding="utf-8") as process:
         yield process, port
         process.kill()
 
 
 @pytest.mark.physics
-def test_a_breakpoint_in_a_step_stops_the_run_with_its_variables(
+def test_a_breakpoint_in_a_step_stops_every_scenario_with_its_variables(
     debugged: tuple[subprocess.Popen[str], int], model: Path
 ) -> None:
     process, port = debugged
@@ -103,15 +103,15 @@ def test_a_breakpoint_in_a_step_stops_the_run_with_its_variables(
     source = {"path": str(model.parent / "steps" / "pickplace_steps.py")}
     debugger.answer("setBreakpoints", source=source, breakpoints=[{"line": 7}])
     debugger.ask("configurationDone")
-
-    thread = debugger.until(type="event", event="stopped")["body"]["threadId"]
-    (frame, *_) = debugger.answer("stackTrace", threadId=thread)["stackFrames"]
-    assert (frame["name"], frame["line"], frame["source"]["path"]) == ("lamp", 7, source["path"])
-    assert debugger.answer("evaluate", expression="colour", frameId=frame["id"])["result"] == "'red'"
-    debugger.ask("continue", threadId=thread)
+    for _ in range(2):
+        thread = debugger.until(type="event", event="stopped")["body"]["threadId"]
+        (frame, *_) = debugger.answer("stackTrace", threadId=thread)["stackFrames"]
+        assert (frame["name"], frame["line"], frame["source"]["path"]) == ("lamp", 7, source["path"])
+        assert debugger.answer("evaluate", expression="colour", frameId=frame["id"])["result"] == "'red'"
+        debugger.ask("continue", threadId=thread)
     rest = process.stdout.read()
     assert process.wait() == 1
-    assert "1 scenario: 0 hold, 1 violated, 0 unknown" in rest
+    assert "2 scenarios: 0 hold, 2 violated, 0 unknown" in rest
 
 
 def test_without_the_library_it_is_named(model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

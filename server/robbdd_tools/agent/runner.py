@@ -57,7 +57,7 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
     channel.send(RunStarted(len(manifest.scenarios), version()))
     debugged = await_debugger(channel)
     with redirect_stdout(Printed(channel, sys.stdout)):
-        problem = _behave(Features(folder, manifest, channel), orders, debugged=debugged)
+        problem = _behave(Features(folder, manifest, channel, debugged=debugged), orders)
         finish_output()
     if problem:
         channel.send(LogLine("error", problem))
@@ -65,11 +65,8 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
     return 1 if problem else 0
 
 
-def _behave(features: Features, orders: Iterable[str], *, debugged: bool) -> str:
-    """Execute the ordered scenarios with behave. Return the reason why behave could not work; empty if it could.
-
-    If the process is ``debugged``, users' steps have the names of the files that users edit.
-    """
+def _behave(features: Features, orders: Iterable[str]) -> str:
+    """Execute the ordered scenarios with behave. Return the reason why behave could not work; empty if it could."""
     configuration: Any = import_module("behave.configuration").Configuration
     behave: Any = import_module("behave.runner")
     config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
@@ -83,7 +80,7 @@ def _behave(features: Features, orders: Iterable[str], *, debugged: bool) -> str
         runner.context = behave.Context(runner)
         runner.hooks.update((name, getattr(hooks, name)) for name in hooks.__all__)
         try:
-            load_steps(features.own_steps(), features.originals() if debugged else {})
+            load_steps(features.own_steps(), features.shown_files())
         except (Exception, SystemExit) as error:
             return features.report_broken_steps(error)
         stack_dumps.rest()
@@ -94,10 +91,15 @@ def _behave(features: Features, orders: Iterable[str], *, debugged: bool) -> str
 
 
 class Features:
-    """The features of a run folder. Each feature is parsed at its first use."""
+    """The features of a run folder. Each feature is parsed at its first use.
 
-    def __init__(self, folder: Path, manifest: Manifest, channel: Reports) -> None:
+    If the process is ``debugged``, users' steps have the names of the files that users edit, and the debugger, a child
+    process, continues to run after a scenario.
+    """
+
+    def __init__(self, folder: Path, manifest: Manifest, channel: Reports, *, debugged: bool = False) -> None:
         self.folder = folder
+        self._debugged = debugged
         self._manifest = manifest
         self._channel = channel
         self._tree: TreeSpec | None = None
@@ -113,9 +115,9 @@ class Features:
             search(folder_of(model))
         return found
 
-    def originals(self) -> dict[str, str]:
-        """Map the absolute paths of the copied files of steps to the files that the user edits."""
-        return sources_in(self.folder, self._manifest.sources)
+    def shown_files(self) -> dict[str, str]:
+        """Map the absolute paths of the copied files of steps to the files that a debugger shows instead."""
+        return sources_in(self.folder, self._manifest.sources) if self._debugged else {}
 
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
         """Yield one feature for each order. The feature contains only the ordered scenario.
@@ -126,7 +128,7 @@ class Features:
             index = decode_request(line).index
             tree = self._manifest.scenarios[index].tree
             if self._tree is not None and self._tree != tree:
-                end_descendants()
+                self._end_descendants()
             self._tree = tree
             self._channel.finished.discard(index)
             userdata[EXECUTION] = str(index)
@@ -140,11 +142,16 @@ class Features:
                 self._unknown(index, "behave did not execute the scenario")
             # The execution of a behaviour tree continues in the next scenario judged from it.
             if tree is None:
-                end_descendants()
+                self._end_descendants()
+
+    def _end_descendants(self) -> None:
+        """End the processes that users' code has started in a scenario."""
+        if not self._debugged:
+            end_descendants()
 
     def report_broken_steps(self, error: BaseException) -> str:
         """Report that the users' steps cannot be loaded. Return the reason."""
-        fault = original(fault_of(error, "steps"), self.originals())
+        fault = original(fault_of(error, "steps"), sources_in(self.folder, self._manifest.sources))
         place = fault.place
         if place is not None and place.own:
             self._channel.send(UserCodeFailed(None, fault))

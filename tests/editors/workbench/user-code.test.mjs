@@ -106,6 +106,23 @@ step("code that is fixed takes the error from all places, and the next run has v
   await workbench.screenshot("user-code-fixed");
 });
 
+step("a breakpoint in the code stops a debugged run there, until it goes on", async () => {
+  await workbench.openFile(CODE);
+  const { line } = await session.placeOf(CODE, SOUND);
+  await workbench.goTo(line, 1);
+  await workbench.command("Debug: Toggle Breakpoint");
+  await workbench.openFile(EXECUTIONS);
+  await workbench.command("RobBDD: Debug Scenarios of This File");
+  await workbench.page.locator(`.tab.active[data-resource-name="${CODE}"]`).waitFor();
+  await workbench.page.locator(".debug-top-stack-frame-line").first().waitFor({ state: "attached" });
+  await workbench.cursorAt(line);
+  await workbench.page.locator(".debug-call-stack .monaco-list-row", { hasText: CODE }).first().waitFor();
+  await workbench.screenshot("user-code-debugged");
+  await workbench.command("Debug: Toggle Breakpoint");
+  await workbench.page.keyboard.press("F5");
+  await workbench.page.locator(".debug-toolbar").waitFor({ state: "hidden" });
+});
+
 async function replace(workspace, text, other) {
   const path = join(workspace, CODE);
   const before = await readFile(path, "utf8");
