@@ -12,11 +12,9 @@ import { openServerSetting } from "./settings";
 import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
 import { isMomentary, problemOf } from "./testing/answers";
-import { isRecord } from "./values";
+import { RUNNING, type Named, hasUri, isNamed } from "./runTargets";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
-/** Commands of the server that run scenarios. */
-const RUNNING = new Set(["robbdd.run", "robbdd.rerunFailed", "robbdd.record"]);
 const STOP_TIMEOUT = 3000;
 
 export class Server implements vscode.Disposable {
@@ -339,17 +337,4 @@ export class Server implements vscode.Disposable {
       complain(lookup.problem, buttons);
     }
   }
-}
-
-interface Named {
-  /** The name of a run in its messages. */
-  readonly token: string;
-}
-
-function isNamed(value: unknown): value is Named {
-  return isRecord(value) && typeof value["token"] === "string";
-}
-
-function hasUri(value: unknown): value is { readonly uri: string } {
-  return typeof value === "object" && value !== null && "uri" in value && typeof value.uri === "string";
 }

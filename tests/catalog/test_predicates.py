@@ -1,4 +1,4 @@
-"""Evaluators on worlds made by hand."""
+"""Predicates of place, grip, reach and configuration, on traces made by hand."""
 
 from __future__ import annotations
 
@@ -7,36 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from catalog.judged_predicates import BALL_OUTLINE, REGIONS, judged, limited, world
 from monitor.traces import heights, still, trace_of
-from robbdd_tools.base.quantity_units import QuantityError
 from robbdd_tools.catalog.api import Arguments, Region
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import Before, During
-from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.protocol.specs import SceneSpec
 from robbdd_tools.world.scene import contents_of
-
-REGIONS = {
-    "tray_ws": (("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),
-    "far_ws": (("far", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),
-    "both_ws": (
-        ("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),
-        ("far", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),
-    ),
-}
-
-
-def judged(predicate: str, trace: Trace, **arguments: str | tuple[str, ...]) -> Verdict:
-    whole = During("start", "end")
-    words: Arguments = arguments
-    return judge(load_catalog().predicates[predicate], words, whole, trace, REGIONS)
-
-
-def world(count: int = 2, **paths: list[list[float]]) -> Trace:
-    bodies = {"tray": still(count), "far": still(count, (1.0, 0.0, 0.0)), **paths}
-    return trace_of(bodies, {"start": 0.0, "end": (count - 1) * 0.1}, {"arm": {"ball": [1.0] * count}})
 
 
 @pytest.mark.parametrize(
@@ -75,20 +55,6 @@ def test_located_at_an_unknown_workspace_is_unknown() -> None:
 def test_held_by_needs_the_grip_throughout() -> None:
     assert judged("held-by", world(ball=still(2)), object="ball", agent="arm").robustness == 1.0
     assert judged("held-by", world(ball=still(2)), object="tray", agent="arm").robustness == -1.0
-
-
-def test_does_not_collide_adds_up_the_way_that_the_target_moves() -> None:
-    shaken = world(3, tray=[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.0, 0.0]])
-    assert judged("does-not-collide", shaken, agent="arm", target="tray").robustness == pytest.approx(0.01)
-    assert judged("does-not-collide", shaken, agent="arm", target="tray_ws").robustness == pytest.approx(0.01)
-    assert judged("does-not-collide", shaken, agent="arm", target="far_ws").robustness == pytest.approx(0.05)
-
-
-def test_does_not_collide_is_violated_when_the_way_is_too_long() -> None:
-    pushed = world(3, tray=[[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.08, 0.0, 0.0]])
-    found = judged("does-not-collide", pushed, agent="arm", target="both_ws")
-    assert found.outcome is Outcome.VIOLATED
-    assert found.at == pytest.approx(0.2)
 
 
 def test_sorted_into_asks_every_object_for_some_workspace() -> None:
@@ -166,14 +132,6 @@ def test_has_config_of_a_workspace_is_that_of_all_its_carriers() -> None:
     assert judged("has-config", trace, target="both_ws", **words).outcome is Outcome.VIOLATED
 
 
-def limited(trace: Trace, target: str, name: str, value: str) -> Trace:
-    """A trace in which an element has a configuration of how to judge it."""
-    return replace(trace, settings={(target, name): value})
-
-
-BALL_OUTLINE = {"ball": (((0.0, 0.0, 0.0), 0.03),)}
-
-
 @pytest.mark.parametrize(
     ("place", "margin"),
     [
@@ -216,73 +174,6 @@ def test_sorted_into_exactly_one_is_not_into_two() -> None:
         assert (found.outcome, found.robustness) == (Outcome.VIOLATED, pytest.approx(-0.1))
     apart = {"objects": ("ball",), "workspaces": ("tray_ws", "far_ws")}
     assert judged("sorted-into", limited(trace, "ball", "exactly_one", "yes"), **apart).outcome is Outcome.HOLDS
-
-
-def test_does_not_collide_up_to_the_way_that_is_configured() -> None:
-    pushed = world(3, tray=[[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.08, 0.0, 0.0]])
-    for limit, outcome in (("0.09", Outcome.HOLDS), ("0.07", Outcome.VIOLATED)):
-        trace = limited(pushed, "tray", "displacement_limit", limit)
-        assert judged("does-not-collide", trace, agent="arm", target="tray_ws").outcome is outcome
-
-
-def test_does_not_collide_by_force_is_in_newtons() -> None:
-    pressed = replace(world(3), forces={("arm", "tray"): np.array([0.0, 12.0, 3.0])})
-    for limit, robustness in (("20", 8.0), ("10", -2.0)):
-        found = judged(
-            "does-not-collide", limited(pressed, "tray", "force_limit", limit), agent="arm", target="tray_ws"
-        )
-        assert (found.robustness, found.unit) == (pytest.approx(robustness), "N")
-    unwatched = limited(world(3), "tray", "force_limit", "10")
-    found = judged("does-not-collide", unwatched, agent="arm", target="tray")
-    assert found.reason == "the trace has no record of 'contact forces of arm on tray'"
-
-
-@pytest.mark.parametrize(("peak", "outcome"), [(139.0, Outcome.HOLDS), (742.0, Outcome.VIOLATED)])
-def test_what_cannot_be_pushed_is_judged_by_contact_force(peak: float, outcome: Outcome) -> None:
-    pressed = replace(world(3), forces={("arm", "tray"): np.array([0.0, peak, 3.0])}, immovable=("tray",))
-    found = judged("does-not-collide", pressed, agent="arm", target="tray_ws")
-    assert (found.outcome, found.robustness, found.unit) == (outcome, pytest.approx(140.0 - peak), "N")
-
-
-def test_what_cannot_be_pushed_and_is_never_touched_holds_by_the_whole_limit() -> None:
-    watched = replace(world(3), watched=("arm",), immovable=("tray",))
-    assert judged("does-not-collide", watched, agent="arm", target="tray").robustness == 140.0
-
-
-def test_a_fixed_target_without_a_record_of_forces_is_unknown() -> None:
-    found = judged("does-not-collide", replace(world(3), immovable=("tray",)), agent="arm", target="tray")
-    assert found.outcome is Outcome.UNKNOWN
-    assert found.reason == "the trace has no record of 'contact forces of arm on tray'"
-
-
-def test_a_target_of_which_a_part_can_be_pushed_has_the_smaller_share_as_its_margin() -> None:
-    far = [[1.0, 0.0, 0.0], [1.04, 0.0, 0.0], [1.04, 0.0, 0.0]]
-    forces = {("arm", "tray"): np.array([0.0, 14.0, 0.0])}
-    pushed = replace(world(3, far=far), forces=forces, immovable=("tray",))
-    found = judged("does-not-collide", pushed, agent="arm", target="both_ws")
-    assert (found.robustness, found.unit) == (pytest.approx(0.2), "")
-    hit = replace(pushed, forces={("arm", "tray"): np.array([0.0, 126.0, 0.0])})
-    assert judged("does-not-collide", hit, agent="arm", target="both_ws").robustness == pytest.approx(0.1)
-
-
-def test_an_agent_moves_safely_as_long_as_its_tool_is_slow() -> None:
-    slow = world(3, arm=[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.03, 0.0, 0.0]])
-    assert judged("moves-safely", slow, agent="arm").robustness == pytest.approx(0.25 - 0.2)
-    fast = world(4, arm=heights([0.0, 0.0, 0.03, 0.03]))
-    found = judged("moves-safely", fast, agent="arm")
-    assert (found.robustness, found.unit) == (pytest.approx(0.25 - 0.3), "m/s")
-    assert found.at == pytest.approx(0.2)
-    assert judged("moves-safely", limited(fast, "arm", "max_speed", "0.5"), agent="arm").outcome is Outcome.HOLDS
-
-
-def test_speed_at_the_beginning_of_a_window_is_that_since_the_sample_before_it() -> None:
-    trace = world(4, arm=heights([0.0, 0.0, 0.03, 0.03]))
-    predicate = load_catalog().predicates["moves-safely"]
-    for time, robustness in ((0.1, 0.25), (0.2, -0.05)):
-        events = (EventStamp("e", time),)
-        found = judge(predicate, {"agent": "arm"}, Before("e"), replace(trace, events=events), REGIONS)
-        assert found.robustness == pytest.approx(robustness)
-    assert judged("moves-safely", world(1, arm=still(1)), agent="arm").outcome is Outcome.UNKNOWN
 
 
 @pytest.mark.parametrize("name", ["has-config", "can-reach"])
@@ -347,187 +238,3 @@ def test_composition_counts_at_any_depth() -> None:
     scene = SceneSpec(contains={"room": ("table", "shelf"), "table": ("bin",), "bin": ("room",)})
     assert contents_of(scene, "room") == ("table", "shelf", "bin")
     assert contents_of(scene, "shelf") == ()
-
-
-@pytest.mark.parametrize(("limit", "robustness", "unit"), [("0.5 m/s", 0.3, "m/s"), ("0.1 m/s", -0.1, "m/s")])
-def test_moves_slower_than_a_limit(limit: str, robustness: float, unit: str) -> None:
-    found = judged("moves-slower-than", world(arm=[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0]]), agent="arm", limit=limit)
-    assert found.robustness == pytest.approx(robustness)
-    assert found.unit == unit
-
-
-@pytest.mark.parametrize(
-    ("distance", "nearer", "unit"), [("50 cm", 20.0, "cm"), ("0.2 m", -0.1, "m"), ("310 mm", 10.0, "mm")]
-)
-def test_distances_are_compared_in_the_unit_of_the_clause(distance: str, nearer: float, unit: str) -> None:
-    trace = world(ball=still(2, (0.0, 0.3, 0.0)))
-    for other in ("tray", "tray_ws"):
-        one = judged("is-nearer-than", trace, one="ball", distance=distance, other=other)
-        assert (one.robustness, one.unit) == (pytest.approx(nearer), unit)
-        far = judged("is-farther-than", trace, one="ball", distance=distance, other=other)
-        assert (far.robustness, far.unit) == (pytest.approx(-nearer), unit)
-
-
-def test_of_a_workspace_the_nearest_carrier_counts() -> None:
-    trace = world(ball=still(2, (0.9, 0.0, 0.0)))
-    found = judged("is-nearer-than", trace, one="ball", distance="0.3 m", other="both_ws")
-    assert found.robustness == pytest.approx(0.2)
-
-
-@pytest.mark.parametrize(
-    ("limit", "robustness", "unit"), [("45 deg", 15.0, "deg"), ("0.5 rad", 0.5 - np.pi / 6, "rad")]
-)
-def test_tilt_is_the_angle_of_the_upward_axis(limit: str, robustness: float, unit: str) -> None:
-    upright = world(ball=still(2, (0.0, 0.0, 0.1)))
-    orientations = upright.orientations.copy()
-    # 30° about x, after a turn about z, which does not tilt.
-    about_x, about_z = (np.cos(np.pi / 12), np.sin(np.pi / 12)), (np.cos(0.4), np.sin(0.4))
-    tilted = (about_x[0] * about_z[0], about_x[1] * about_z[0], -about_x[1] * about_z[1], about_x[0] * about_z[1])
-    orientations[:, upright.column("ball")] = tilted
-    found = judged("is-tilted-less-than", replace(upright, orientations=orientations), object="ball", limit=limit)
-    assert (found.robustness, found.unit) == (pytest.approx(robustness), unit)
-    untilted = judged("is-tilted-less-than", upright, object="ball", limit="10 deg")
-    assert untilted.robustness == pytest.approx(10.0)
-
-
-@pytest.mark.parametrize("limit", ["0.25", "0.25 m", "fast", "0.25 mph"])
-def test_a_quantity_that_does_not_fit_is_no_evidence(limit: str) -> None:
-    with pytest.raises(QuantityError):
-        judged("moves-slower-than", world(arm=still(2)), agent="arm", limit=limit)
-
-
-SMALL_BALL = {"ball": (((0.0, 0.0, 0.0), 0.05),)}
-CORNERS = {"ball": tuple(((x, y, z), 0.0) for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05))}
-
-
-@pytest.mark.parametrize(
-    ("place", "margin"),
-    [
-        ((0.0, 0.0, 0.05), 0.05),
-        ((0.0, 0.05, 0.05), 0.0),
-        ((0.0, 0.06, 0.05), -0.01),  # located at the tray, but it sticks out
-        ((0.0, 0.0, 0.16), -0.01),  # higher than the rim
-        ((0.5, 0.0, 0.05), -0.35),
-    ],
-)
-def test_entirely_inside_is_the_distance_of_the_farthest_point(
-    place: tuple[float, float, float], margin: float
-) -> None:
-    trace = replace(world(ball=still(2, place)), outlines=SMALL_BALL)
-    found = judged("is-entirely-inside", trace, object="ball", workspace="tray_ws")
-    assert found.robustness == pytest.approx(margin, abs=1e-9)
-
-
-def test_a_turned_box_sticks_out_with_its_corner() -> None:
-    trace = replace(world(ball=still(2, (0.0, 0.045, 0.05))), outlines=CORNERS)
-    assert judged("is-entirely-inside", trace, object="ball", workspace="tray_ws").outcome is Outcome.HOLDS
-    orientations = trace.orientations.copy()
-    orientations[:, trace.column("ball")] = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
-    turned = judged("is-entirely-inside", replace(trace, orientations=orientations), object="ball", workspace="tray_ws")
-    assert turned.robustness == pytest.approx(0.1 - 0.045 - 0.05 * np.sqrt(2))
-
-
-def test_an_object_without_an_outline_is_unknown_where_all_of_it_counts() -> None:
-    trace = world(ball=still(2, (0.0, 0.0, 0.05)))
-    for outlines in ({}, {"ball": ()}):
-        bare = replace(trace, outlines=outlines)
-        assert judged("is-entirely-inside", bare, object="ball", workspace="tray_ws").outcome is Outcome.UNKNOWN
-        assert judged("is-at-rest", bare, object="ball").outcome is Outcome.UNKNOWN
-
-
-@pytest.mark.parametrize(("way", "margin"), [(0.0, 0.01), (0.001, 0.0), (0.0015, -0.005)])
-def test_what_shifts_is_not_at_rest(way: float, margin: float) -> None:
-    trace = replace(world(ball=[[0.0, 0.0, 0.1], [way, 0.0, 0.1]]), outlines=SMALL_BALL)
-    assert judged("is-at-rest", trace, object="ball").robustness == pytest.approx(margin, abs=1e-9)
-
-
-def test_what_turns_on_the_spot_is_not_at_rest() -> None:
-    trace = replace(world(ball=still(2, (0.0, 0.0, 0.1))), outlines=CORNERS)
-    orientations = trace.orientations.copy()
-    orientations[1, trace.column("ball")] = (-np.cos(0.01), 0.0, 0.0, -np.sin(0.01))  # 0.02 rad in 0.1 s, as -q
-    found = judged("is-at-rest", replace(trace, orientations=orientations), object="ball")
-    assert found.robustness == pytest.approx(0.01 - 0.2 * 0.05 * np.sqrt(3))
-
-
-def test_one_sample_does_not_show_rest() -> None:
-    trace = replace(world(1, ball=still(1)), outlines=SMALL_BALL)
-    assert judged("is-at-rest", trace, object="ball").outcome is Outcome.UNKNOWN
-
-
-def touching(force: float, watched: tuple[str, ...] = ("ball",)) -> Trace:
-    pressed = {("ball", "tray"): np.array([0.0, force])} if force else {}
-    return replace(world(ball=still(2)), touches=pressed, touch_watched=watched)
-
-
-@pytest.mark.parametrize(
-    ("force", "touches", "apart"), [(0.0, -0.01, 0.0), (0.009, -0.01, 0.0), (0.01, -0.01, -0.01), (3.0, -0.01, -3.0)]
-)
-def test_touching_is_a_contact_force_at_each_sample(force: float, touches: float, apart: float) -> None:
-    for one, other in (("ball", "tray"), ("tray", "ball"), ("ball", "tray_ws")):
-        found = judged("touches", touching(force), one=one, other=other)
-        assert found.robustness == pytest.approx(touches)  # the first sample has no contact
-        assert judged("does-not-touch", touching(force), one=one, other=other).robustness == pytest.approx(apart)
-
-
-def test_a_force_is_compared_with_the_limit() -> None:
-    found = judged("presses-with-less-than", touching(3.0), one="ball", other="tray_ws", limit="2 N")
-    assert (found.outcome, found.robustness, found.unit) == (Outcome.VIOLATED, pytest.approx(-1.0), "N")
-    assert judged("presses-with-less-than", touching(3.0), one="ball", other="tray", limit="3 N").robustness == 0.0
-
-
-@pytest.mark.parametrize("predicate", ["touches", "does-not-touch"])
-def test_forces_that_were_not_recorded_are_unknown(predicate: str) -> None:
-    assert judged(predicate, touching(0.0, ()), one="ball", other="tray").outcome is Outcome.UNKNOWN
-    assert judged(predicate, touching(0.0), one="far", other="tray").outcome is Outcome.UNKNOWN
-    assert judged(predicate, touching(0.0), one="tray_ws", other="tray").outcome is Outcome.UNKNOWN
-    # One of the two trays was watched by nobody.
-    assert judged(predicate, touching(0.0, ("tray",)), one="both_ws", other="ball").outcome is Outcome.UNKNOWN
-
-
-@pytest.mark.parametrize(
-    ("place", "force", "margin"),
-    [
-        ((0.0, 0.0, 0.15), 1.0, 0.1),
-        ((0.0, 0.06, 0.15), 1.0, 0.04),
-        ((0.0, 0.1, 0.15), 1.0, 0.0),
-        ((0.0, 0.11, 0.15), 1.0, -0.01),  # it leans over the edge
-        ((0.18, 0.0, 0.15), 1.0, 0.02),
-        ((0.0, 0.0, 0.0), 1.0, -0.05),  # it is inside, or hangs through
-        ((0.0, 0.11, 0.0), 1.0, -0.05),  # it touches the side
-        ((0.0, 0.0, 0.15), 0.0, -0.05),  # it hovers
-        ((0.0, 0.0, 0.1), 0.0, -0.0001),  # it is let go of without contact
-    ],
-)
-def test_on_top_needs_contact_and_the_centre_above(
-    place: tuple[float, float, float], force: float, margin: float
-) -> None:
-    slab = tuple(((x, y, z), 0.0) for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (0.0, 0.05))
-    trace = replace(
-        world(ball=still(2, place)),
-        outlines={**SMALL_BALL, "tray": slab},
-        touches={("ball", "tray"): np.full(2, force)},
-        touch_watched=("ball", "tray"),
-    )
-    found = judged("is-on-top-of", trace, one="ball", other="tray")
-    assert found.robustness == pytest.approx(margin, abs=1e-9)
-
-
-def test_on_top_is_unknown_without_forces_or_outlines() -> None:
-    trace = replace(world(ball=still(2, (0.0, 0.0, 0.15))), outlines={**SMALL_BALL, "tray": SMALL_BALL["ball"]})
-    assert judged("is-on-top-of", trace, one="ball", other="tray").outcome is Outcome.UNKNOWN
-    felt = replace(trace, touch_watched=("ball",), outlines=SMALL_BALL)
-    assert judged("is-on-top-of", felt, one="ball", other="tray").outcome is Outcome.UNKNOWN
-
-
-def test_the_footprint_turns_with_the_object() -> None:
-    bar = tuple(((x, y, z), 0.0) for x in (-0.2, 0.2) for y in (-0.02, 0.02) for z in (-0.05, 0.05))
-    trace = replace(
-        world(ball=still(2, (0.0, 0.1, 0.1))),
-        outlines={**SMALL_BALL, "tray": bar},
-        touches={("ball", "tray"): np.ones(2)},
-    )
-    assert judged("is-on-top-of", trace, one="ball", other="tray").robustness == pytest.approx(-0.08)
-    orientations = trace.orientations.copy()
-    orientations[:, trace.column("tray")] = (np.cos(np.pi / 4), 0.0, 0.0, np.sin(np.pi / 4))
-    turned = replace(trace, orientations=orientations)
-    assert judged("is-on-top-of", turned, one="ball", other="tray").robustness == pytest.approx(0.02)
