@@ -60,6 +60,8 @@ function askName(template: string): Thenable<string | undefined> {
     title: "New RobBDD Project",
     prompt: "The name of its folder; its models' namespaces get this name as well.",
     value: template,
+    // The window may take the focus, for example to tick a step of the walkthrough; that is no answer.
+    ignoreFocusOut: true,
     validateInput: (value) => (/^[^/\\:*?"<>|]+$/.test(value.trim()) ? undefined : "A folder cannot have this name."),
   });
 }

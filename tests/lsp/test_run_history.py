@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 from collections.abc import AsyncIterator
@@ -17,7 +18,7 @@ from pytest_lsp import client_capabilities, make_test_lsp_client
 
 from fork_kit import ROBBDD_LSP
 from kit import EXAMPLES, schema_errors
-from lsp_kit import Editor, begin_session, plain
+from lsp_kit import PATIENCE, Editor, begin_session, plain
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project
@@ -97,10 +98,14 @@ async def recorded(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncItera
 
 @pytest.mark.parametrize("recorded", [True, False], indirect=True, ids=["linked", "plain"])
 async def test_a_hover_lists_the_verdicts_of_the_latest_runs(recorded: Editor, request: pytest.FixtureRequest) -> None:
-    shown = await recorded.client.text_document_hover_async(types.HoverParams(**recorded.at(CLAUSE)))
-    assert shown is not None
-    assert isinstance(shown.contents, types.MarkupContent)
-    line = shown.contents.value.splitlines()[-1]
+    lines: list[str] = []
+    async with asyncio.timeout(PATIENCE):  # until the results of the stored runs are shown
+        while not lines:
+            shown = await recorded.client.text_document_hover_async(types.HoverParams(**recorded.at(CLAUSE)))
+            assert shown is not None
+            assert isinstance(shown.contents, types.MarkupContent)
+            lines = [line for line in shown.contents.value.splitlines() if line.startswith("Runs of at-goal")]
+    (line,) = lines
     assert line.startswith("Runs of at-goal: ✗ 0/2 (run 3) · ? 1/2 (run 2) · ✔ 2/2 (run 1)")
     links = re.findall(r"\[History\]\(command:robbdd.showHistory\?([^)]*)\)", line)
     if request.node.callspec.params["recorded"]:

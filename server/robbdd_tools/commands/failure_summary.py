@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.verdict import Outcome
@@ -18,14 +19,20 @@ MAX_CAUSES = 5
 """Maximum number of causes that are listed."""
 
 
-def failure_summary(scenarios: Iterable[ScenarioResult]) -> list[tuple[Outcome, str]]:
+def failure_summary(
+    scenarios: Iterable[ScenarioResult], errors: Mapping[str, int] | None = None
+) -> list[tuple[Outcome, str]]:
     """Return a line for each cause of failures, the most frequent first: its clause, its reason and its number.
 
     Clauses that are unknown only because of another one do not count. The worst margin represents all scenarios.
+    ``errors`` maps the faults in users' code that have been printed to their numbers, which take the place of reasons.
     """
     groups: dict[tuple[Outcome, str, str], list[tuple[ClauseSpec, ClauseJudged]]] = {}
     for scenario in scenarios:
         for clause, judged in _causes(scenario):
+            number = (errors or {}).get(judged.fault)
+            if number is not None:
+                judged = replace(judged, reason=f"no evidence, because of error {number}")
             groups.setdefault((Outcome(judged.verdict), clause.name, judged.reason), []).append((clause, judged))
     found = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0][0] is not Outcome.VIOLATED))
     lines = [(outcome, _line(outcome, name, failures)) for (outcome, name, _), failures in found[:MAX_CAUSES]]

@@ -170,7 +170,7 @@ class Display:
             self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
-        for outcome, words in failure_summary(shown) if len(shown) > 1 else ():
+        for outcome, words in failure_summary(shown, self._faults) if len(shown) > 1 else ():
             self._console.print(plain(words, STYLES[outcome]))
         outcomes = [scenario.verdict for scenario in shown]
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]

@@ -27,7 +27,7 @@ step("each step's button works and its tick comes with the deed", async () => {
   await press("project", "New Project…");
   await workbench.pick("pickplace");
   await page.locator(".quick-input-message", { hasText: "The name of its folder" }).waitFor();
-  await page.keyboard.press("Enter");
+  await workbench.acceptInput();
   await page.locator('.tab.active[data-resource-name="pickplace.bdd"]').waitFor();
   await done("server");
   await done("project");

@@ -83,6 +83,11 @@ export class Workbench {
     await this.page.keyboard.press("Enter");
   }
 
+  /** Accept the text of the quick input, wherever the focus is. */
+  async acceptInput() {
+    await this.page.locator(QUICK_INPUT).press("Enter");
+  }
+
   /** Change the system's colour scheme, which the theme follows, and wait until the window has changed. */
   async changeScheme(scheme, schemes = SCHEMES) {
     await this.page.emulateMedia({ colorScheme: scheme });
