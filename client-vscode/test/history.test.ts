@@ -43,7 +43,7 @@ test("a run's line has its verdict, its rate, its margin and what is to be known
   assert.equal(summaryOf(HISTORY), "holds in 1 of 2 runs");
 });
 
-test("a flip is told with both margins and the reason", () => {
+test("a flip shows both margins and the reason", () => {
   assert.equal(changeWords(CHANGE), "at-goal ✔ → ✗ (+12.0 mm → −3.00 mm): too far");
   const unmeasured = { ...CHANGE, before: null, margin_before: null, margin_after: null, reason: "" };
   assert.equal(changeWords(unmeasured), "at-goal – → ✗");

@@ -1,4 +1,4 @@
-// Run until it fails: what the server is asked for, and what the user is told.
+// Run until it fails: the requests to the server, and the messages to the user.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { failedIn } from "../src/runs/untilFailure";
@@ -48,7 +48,7 @@ test("the failure leads to its replay", async () => {
   await command("robbdd.runUntilFailure");
   await new Promise((resolve) => setImmediate(resolve));
   assert.deepEqual(replayed, [{ uri: MODEL.toString(), run: 4, index: 2 }]);
-  assert.deepEqual(editor.told, ["Execution 3 of run 4 did not hold, after 2 that did."]);
+  assert.deepEqual(editor.messages, ["Execution 3 of run 4 did not hold, after 2 that did."]);
 });
 
 test("answers without a failure name none", () => {

@@ -118,7 +118,7 @@ class Editor {
   readonly serializers = new Map<string, { deserializeWebviewPanel: (panel: WebviewPanel, state: unknown) => Promise<void> }>();
   readonly panels: WebviewPanel[] = [];
   /** Messages that are no problems. */
-  readonly told: string[] = [];
+  readonly messages: string[] = [];
   /** The buttons that the user presses in those messages, one after the other. */
   readonly pressed: string[] = [];
   /** Messages that say to the user what went wrong. */
@@ -161,7 +161,7 @@ class Editor {
     }
     this.panels.length = 0;
     this.problems.length = 0;
-    this.told.length = 0;
+    this.messages.length = 0;
     this.pressed.length = 0;
     this.errored.length = 0;
     this.passed.length = 0;
@@ -240,7 +240,7 @@ export const window = {
   showErrorMessage: report,
   showWarningMessage: report,
   showInformationMessage: (message: string) => {
-    editor.told.push(message);
+    editor.messages.push(message);
     return Promise.resolve(editor.pressed.shift());
   },
   showInputBox: ({ validateInput }: { readonly validateInput?: (text: string) => string | undefined }) => {

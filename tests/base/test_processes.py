@@ -15,7 +15,7 @@ import pytest
 
 from robbdd_tools.base import processes
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no POSIX signals")
 NEW_GROUP, BREAK, BELOW_NORMAL = 0x200, 1, 0x4000
 PARENT = """
 import subprocess, sys, time

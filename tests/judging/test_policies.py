@@ -3,61 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from monitor.traces import still, trace_of
+from judging.judged_policies import CLAUSE, NEAR, SENTENCE, STATED, TRUTH, as_judged, judged, moving, spec_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.judging.decisions import decide
-from robbdd_tools.judging.scenario_clauses import judged_clause, stated_by_step
-from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+from robbdd_tools.monitor.policy import Observation, Provider, Rule
 from robbdd_tools.monitor.time import After, During
-from robbdd_tools.monitor.trace import Trace
-from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict
-from robbdd_tools.protocol.clauses import Clause, Fluent, Junction, Text, fluents_of
-from robbdd_tools.protocol.specs import ClauseSpec, ExecutionSpec, ScenarioSpec
-from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place, scenario
-
-CLAUSE = "https://x/at-goal"
-SENTENCE = f'"{CUBE}" is located at "{BIN_WS}" from "t:a" until "t:b"'
-STATED = ClauseSpec(7, CLAUSE, "at-goal", "then", SENTENCE)
-TRUTH = Provider("x:truth", "ground-truth", 100.0)
-NEAR = Rule("distance", form="less-than", bounds=(0.5,))
-
-
-def spec_of(
-    rule: Rule = NEAR,
-    provider: Provider = TRUTH,
-    targets: tuple[str, ...] = ("t:var-thing", "env:bin"),
-    horizon: float | None = None,
-    seed: int = 1,
-    model: str = "",
-) -> ScenarioSpec:
-    policy = Policy("x:policy", CLAUSE, rule, horizon, (Observation("x:seen", provider, targets),))
-    way = ExecutionSpec("x:run", "x:run", Implementation("x:impl", "catalog", "pick-place"), policies=(policy,))
-    return replace(scenario(seed=seed), values={"t:var-thing": CUBE}, execution=way, model=model)
-
-
-def moving(distances: list[float]) -> Trace:
-    """A cube at some distances from a bin, sampled every 0.1 s."""
-    path = [[distance, 0.0, 0.0] for distance in distances]
-    events = {"t:a": 0.0, "t:b": (len(path) - 1) * 0.1}
-    return trace_of({CUBE: path, "env:bin": still(len(path))}, events)
-
-
-def as_judged(sentence: str, known: ClauseSpec, spec: ScenarioSpec) -> Clause:
-    statement = stated_by_step("then", sentence, known)
-    assert isinstance(statement, Fluent | Text | Junction)
-    return judged_clause(statement, known, spec)
-
-
-def judged(spec: ScenarioSpec, trace: Trace, sentence: str = SENTENCE) -> Verdict:
-    clause = as_judged(sentence, STATED, spec)
-    return decide(clause, trace, {}, {"t:a", "t:b"})
+from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.clauses import Fluent, Junction, fluents_of
+from robbdd_tools.protocol.specs import ScenarioSpec
+from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place
 
 
 @pytest.mark.parametrize(
@@ -186,49 +145,6 @@ def test_what_cannot_be_observed_is_unknown_and_says_why(spec: ScenarioSpec, rea
     assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason)
 
 
-def by_code(folder: Path, module: str, body: str) -> Verdict:
-    (folder / f"{module}.py").write_text(f"import numpy as np\n\n\ndef judge(evidence, arguments):\n    {body}\n")
-    return judged(spec_of(Rule("python", f"{module}:judge"), model=str(folder / "m.bddx")), moving([0.2, 0.4]))
-
-
-@pytest.mark.parametrize(
-    ("module", "body", "outcome", "robustness"),
-    [
-        ("by_margin", "return 0.5 - evidence.position(arguments['thing'])[:, 0]", Outcome.HOLDS, 0.1),
-        ("by_truth", "return evidence.position(arguments['thing'])[:, 0] < 0.3", Outcome.VIOLATED, -1.0),
-        ("by_one_answer", "return bool(evidence.stamps('env:bin')[0] == 0.0)", Outcome.HOLDS, 1.0),
-        ("by_nothing_known", "return np.full(len(evidence.times), np.nan)", Outcome.UNKNOWN, None),
-    ],
-)
-def test_code_of_the_user_judges(
-    tmp_path: Path, module: str, body: str, outcome: Outcome, robustness: float | None
-) -> None:
-    found = by_code(tmp_path, module, body)
-    assert found.outcome is outcome
-    assert found.robustness == (None if robustness is None else pytest.approx(robustness))
-
-
-@pytest.mark.parametrize(
-    ("module", "body", "reason"),
-    [
-        ("divides", "return 1 / 0", "divides:judge failed: ZeroDivisionError: division by zero ({}:5)"),
-        ("gives_up", "raise SystemExit(3)", "gives_up:judge failed: SystemExit: 3 ({}:5)"),
-        ("looks_away", "return evidence.position('env:lamp')", "looks_away:judge failed: KeyError: 'env:lamp' ({}:5)"),
-        ("broken", "return (", "broken:judge failed: SyntaxError: '(' was never closed ({}:5)"),
-        ("says", "return 'yes'", "says:judge must return one number or truth value, or one for each of the 2 samples"),
-    ],
-)
-def test_a_failure_of_the_users_code_is_told_as_theirs(tmp_path: Path, module: str, body: str, reason: str) -> None:
-    found = by_code(tmp_path, module, body)
-    assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason.format(tmp_path / f"{module}.py"))
-
-
-def test_a_module_that_is_not_there_is_explained(tmp_path: Path) -> None:
-    spec = spec_of(Rule("python", "no_such_module:judge"), model=str(tmp_path / "m.bddx"))
-    found = judged(spec, moving([0.2]))
-    assert found.reason == ("no_such_module:judge failed: ModuleNotFoundError: No module named 'no_such_module'")
-
-
 @pytest.fixture(scope="module")
 def carried() -> Execution:
     run = execution([pick_place()])
@@ -257,21 +173,6 @@ def test_in_physics_latency_and_noise_are_seen(carried: Execution) -> None:
         margins.append(found.robustness)
     assert np.ptp(margins[:2]) > 1e-4
     assert len(set(margins)) == 3
-
-
-def test_users_code_gets_what_fills_the_slots_and_quantified_variables_of_its_clause(tmp_path: Path) -> None:
-    (tmp_path / "own_arguments.py").write_text(
-        "import numpy as np\n\n\ndef judge(evidence, arguments):\n"
-        "    assert arguments == {'thing': 'env:bin', 'part': 'env:cube1', 'others': ['a', 'b']}, arguments\n"
-        "    return 0.3 - evidence.position(arguments['part'])[:, 0]\n"
-    )
-    arguments = {"thing": "env:bin", "part": CUBE, "others": ["a", "b"]}
-    spec = spec_of(Rule("python", "own_arguments:judge"), targets=("t:part",), model=str(tmp_path / "m.bddx"))
-    located = stated_by_step("then", SENTENCE, STATED)
-    assert isinstance(located, Fluent)
-    clause = judged_clause(replace(located, named=arguments), STATED, spec)
-    found = decide(clause, moving([0.2, 0.4]), {}, {"t:a", "t:b"})
-    assert (found.outcome, found.robustness, found.reason) == (Outcome.VIOLATED, pytest.approx(-0.1), "")
 
 
 def test_a_workspace_is_observed_at_its_first_region_which_turns_with_its_carrier() -> None:
@@ -325,29 +226,6 @@ def test_observations_as_far_apart_as_allowed_are_evidence() -> None:
     policy = replace(spec.execution.policies[0], observations=(slow, fast))
     found = judged(replace(spec, execution=replace(spec.execution, policies=(policy,))), moving([0.2] * 5))
     assert found.outcome is Outcome.HOLDS
-
-
-def test_answers_of_code_that_are_no_margins_are_refused_with_the_place_of_the_function(tmp_path: Path) -> None:
-    for module, body, words in (
-        ("too_many", "return [1.0, 2.0, 3.0]", "each of the 2 samples"),
-        ("infinite", "return [1.0, float('inf')]", "1 are not"),
-        ("complex_one", "return 1j", "each of the 2 samples"),
-    ):
-        found = by_code(tmp_path, module, body)
-        assert found.cause is Cause.USER_CODE
-        assert words in found.reason
-        assert found.fault is not None
-        assert found.fault.place is not None
-        assert (found.fault.place.line, found.fault.origin) == (4, "x:policy")
-    assert by_code(tmp_path, "whole_numbers", "return [1, 2]").robustness == 1.0
-    assert by_code(tmp_path, "unsigned", "return np.uint8(3)").robustness == 3.0
-
-
-def test_code_that_returns_no_numbers_is_named_with_its_place(tmp_path: Path) -> None:
-    found = by_code(tmp_path, "by_nan", "return np.full(len(evidence.times), np.nan)")
-    assert found.reason == "by_nan:judge must return finite numbers, but 2 are not"
-    assert found.fault is not None
-    assert found.fault.code == "by_nan:judge"
 
 
 def test_the_samples_of_a_log_are_the_observations() -> None:

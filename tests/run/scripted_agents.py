@@ -203,7 +203,7 @@ def shown(message: RunMessage) -> str:
             return type(other).__name__
 
 
-def told(scheduler: Scheduler) -> list[str]:
+def messages_of(scheduler: Scheduler) -> list[str]:
     return [shown(message) for message in scheduler.messages()]
 
 

@@ -20,9 +20,9 @@ from run.scripted_agents import (
     SOUND,
     Stage,
     manifest_of,
+    messages_of,
     scheduler_of,
     shown,
-    told,
     whole,
 )
 
@@ -31,7 +31,7 @@ def test_a_process_that_dies_leaves_its_open_clauses_unknown_and_another_goes_on
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     stage = Stage({1: ["start holds:5 die"]})
-    assert told(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1))) == [
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1))) == [
         *whole(0),
         "1 starts",
         "1 5 holds",
@@ -46,13 +46,13 @@ def test_a_process_that_dies_leaves_its_open_clauses_unknown_and_another_goes_on
 def test_the_rest_of_a_tree_goes_to_the_next_process(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["start die"]})
     manifest = manifest_of(4, {0: "a", 2: "a", 3: "a"})
-    assert told(scheduler_of(monkeypatch, stage, manifest, Policy(1)))[-1] == "complete"
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest, Policy(1)))[-1] == "complete"
     assert [agent.executed for agent in stage.agents] == [[0], [2, 3, 1]]
 
 
 def test_a_scenario_that_takes_too_long_is_ended_however_much_it_says(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["start holds:5 late"]})
-    assert told(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1, timeout=9000.0))) == [
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1, timeout=9000.0))) == [
         "0 starts",
         "0 5 holds",
         f"0 prints {LATE}",
@@ -73,12 +73,12 @@ def test_without_a_limit_a_scenario_may_take_any_time(monkeypatch: pytest.Monkey
 
     stage.scripts[0] = [output]
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(1), Policy(1, timeout=0.0), watch=hours)
-    assert told(scheduler) == ["0 starts", "0 prints slow", "0 ends", "complete"]
+    assert messages_of(scheduler) == ["0 starts", "0 prints slow", "0 ends", "complete"]
 
 
 def test_a_process_that_does_not_begin_is_replaced_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["die", "late", SOUND], 1: ["die", "die", SOUND]})
-    found = told(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1)))
+    found = messages_of(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1)))
     assert found == [f"0 prints {LATE}", *whole(0, 1), "complete"]
     assert len(stage.agents) == 5
 
@@ -87,7 +87,7 @@ def test_a_run_whose_processes_never_begin_is_given_up(monkeypatch: pytest.Monke
     for word, ending in (("die", "agent 3 crashed"), ("late", "the agent process did not begin within 120 s")):
         stage = Stage({1: [word]})
         scheduler = scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1))
-        found = told(scheduler)
+        found = messages_of(scheduler)
         assert found[:4] == whole(0)
         assert found[-1] == "incomplete"
         assert scheduler.ending == ending
@@ -97,11 +97,11 @@ def test_a_run_whose_processes_never_begin_is_given_up(monkeypatch: pytest.Monke
 def test_an_agent_that_cannot_work_says_why_once(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["broken:no-steps"], 1: ["wait:never"]})
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1))
-    assert told(scheduler) == ["error: no-steps", "warning: as I said", "incomplete"]
+    assert messages_of(scheduler) == ["error: no-steps", "warning: as I said", "incomplete"]
     assert scheduler.ending == "no-steps"
     silent = Stage({0: ["wait:never"]}, [RunFinished(False)])
     scheduler = scheduler_of(monkeypatch, silent, manifest_of(1), Policy(1))
-    assert told(scheduler) == ["incomplete"]
+    assert messages_of(scheduler) == ["incomplete"]
     assert scheduler.ending == "the agent cannot work"
 
 
@@ -109,7 +109,7 @@ def test_the_same_complaint_of_every_process_is_shown_once(monkeypatch: pytest.M
     same = [RunStarted(3, "MuJoCo"), LogLine("info", "hello"), UserCodeFailed(None, FAULT), Output(None, "loading")]
     stage = Stage({0: ["start die"], 1: ["start die"]}, same)
     heard: list[RunMessage] = []
-    found = told(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1), watch=heard.append))
+    found = messages_of(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1), watch=heard.append))
     for once in ("RunStarted", "info: hello", "UserCodeFailed", "None prints loading"):
         assert found.count(once) == 1
     assert len(stage.agents) == 3
@@ -121,13 +121,13 @@ def test_the_same_complaint_of_every_process_is_shown_once(monkeypatch: pytest.M
 def test_more_output_of_a_later_process_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["start die"]}, [Output(None, "one")])
     stage.scripts[1] = [Output(None, "two")]
-    found = told(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1)))
+    found = messages_of(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1)))
     assert [line for line in found if line.startswith("None")] == ["None prints one", "None prints two"]
 
 
 def test_a_second_beginning_gives_a_scenario_no_more_time(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["start start holds:5 late"]})
-    found = told(scheduler_of(monkeypatch, stage, manifest_of(1), Policy(1)))
+    found = messages_of(scheduler_of(monkeypatch, stage, manifest_of(1), Policy(1)))
     assert found.count("0 starts") == 2
     assert f"0 6 unknown (timed-out: timed out after {TIMEOUT:g} s)" in found
 

@@ -28,16 +28,16 @@ from run.scripted_agents import (
     FAULT,
     Stage,
     manifest_of,
+    messages_of,
     scheduler_of,
     shown,
-    told,
     whole,
 )
 
 
 def test_one_process_executes_everything_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({})
-    assert told(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1))) == [*whole(0, 1, 2), "complete"]
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest_of(3), Policy(1))) == [*whole(0, 1, 2), "complete"]
     (agent,) = stage.agents
     assert (agent.executed, agent.number, agent.folder, agent.log_limit) == ([0, 1, 2], 1, Path("run"), LIMIT)
     assert agent.ended.is_set()
@@ -47,7 +47,7 @@ def test_what_watches_hears_everything_at_once_and_the_run_in_order(monkeypatch:
     stage = Stage({0: ["start wait:other holds:5 holds:6 finish"], 1: ["start holds:5 holds:6 finish go:other"]})
     heard: list[RunMessage] = []
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(2), Policy(2), watch=heard.append)
-    assert told(scheduler) == [*whole(0, 1), "complete"]
+    assert messages_of(scheduler) == [*whole(0, 1), "complete"]
     assert [shown(message) for message in heard if isinstance(message, ScenarioFinished)] == ["1 ends", "0 ends"]
     assert [agent.executed for agent in stage.agents] == [[0], [1]]
 
@@ -58,14 +58,14 @@ def test_only_the_chosen_scenarios_are_executed_by_agents_with_the_next_numbers(
     stage = Stage({})
     policy = Policy(1, log_limit=77)
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(5), policy, indices=[1, 3], first_agent=7)
-    assert told(scheduler) == [*whole(1, 3), "complete"]
+    assert messages_of(scheduler) == [*whole(1, 3), "complete"]
     assert [(agent.number, agent.log_limit) for agent in stage.agents] == [(7, 77)]
 
 
 def test_a_debugged_process_has_no_time_limit_while_it_waits(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({})
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(2), debugged(Policy(8), 5678))
-    assert told(scheduler) == [*whole(0, 1), "complete"]
+    assert messages_of(scheduler) == [*whole(0, 1), "complete"]
     assert [(agent.debug, agent.timeout) for agent in stage.agents] == [(5678, 0.0)]
     limited, waiting = (AgentWorker(cast(Agent, stage.agents[0]), debugged=flag) for flag in (False, True))
     for worker in (limited, waiting):
@@ -75,14 +75,14 @@ def test_a_debugged_process_has_no_time_limit_while_it_waits(monkeypatch: pytest
 
 def test_no_more_processes_begin_than_there_is_work(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({0: ["start wait:b holds:5 holds:6 finish"], 1: ["start go:b holds:5 holds:6 finish"]})
-    assert told(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(8)))[-1] == "complete"
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest_of(2), Policy(8)))[-1] == "complete"
     assert len(stage.agents) == 2
 
 
 def test_scenarios_of_one_tree_go_to_one_process_at_the_place_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage({})
     manifest = manifest_of(5, {1: "a", 2: "b", 3: "a", 4: "b"})
-    assert told(scheduler_of(monkeypatch, stage, manifest, Policy(1))) == [*whole(0, 1, 2, 3, 4), "complete"]
+    assert messages_of(scheduler_of(monkeypatch, stage, manifest, Policy(1))) == [*whole(0, 1, 2, 3, 4), "complete"]
     assert stage.agents[0].executed == [0, 1, 3, 2, 4]
 
 
@@ -98,7 +98,7 @@ def test_scenarios_of_one_tree_go_to_one_process_at_the_place_of_the_first(monke
 def test_what_an_agent_cannot_have_sent_is_ignored_with_a_warning(
     monkeypatch: pytest.MonkeyPatch, script: str, warning: str
 ) -> None:
-    found = told(scheduler_of(monkeypatch, Stage({0: [script]}), manifest_of(1), Policy(1)))
+    found = messages_of(scheduler_of(monkeypatch, Stage({0: [script]}), manifest_of(1), Policy(1)))
     assert [line for line in found if not line.startswith("warning")] == [*whole(0), "complete"]
     assert [line.startswith(warning) for line in found if line.startswith("warning")] == [True]
 
@@ -115,7 +115,7 @@ def test_what_an_agent_cannot_have_sent_is_ignored_with_a_warning(
 def test_messages_of_other_scenarios_are_ignored_with_a_warning(
     monkeypatch: pytest.MonkeyPatch, message: RunMessage, warning: str
 ) -> None:
-    found = told(scheduler_of(monkeypatch, Stage({0: [message]}), manifest_of(2), Policy(1)))
+    found = messages_of(scheduler_of(monkeypatch, Stage({0: [message]}), manifest_of(2), Policy(1)))
     assert found[0] == "0 starts"
     assert found[1].startswith(warning)
     assert found[2:] == ["0 ends", *whole(1), "complete"]
@@ -141,7 +141,7 @@ def test_busy_processes_are_those_that_have_begun_a_scenario(monkeypatch: pytest
             busy.append(scheduler.busy)
 
     scheduler = scheduler_of(monkeypatch, stage, manifest_of(2), Policy(1), watch=watch)
-    told(scheduler)
+    messages_of(scheduler)
     assert busy == [{101: 0}, {101: 0}, {101: 1}, {101: 1}]
     assert scheduler.busy == {}
 

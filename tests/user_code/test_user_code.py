@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from judging.test_policies import judged, moving, spec_of
+from judging.judged_policies import judged, moving, spec_of
 from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.printed_output import CUT, MAX_CHARACTERS, Printed
 from robbdd_tools.agent.tree_execution import TreeRun

@@ -35,7 +35,7 @@ class Spellings:
     def open(self, uri: str) -> list[str]:
         """Let the URI of an open document stand for its file. Return the other URIs of the file.
 
-        If the file is open by another URI, too, this one stands for itself only.
+        If the file is already open by another URI, that one keeps the file, and the new URI names its own document.
         """
         with self._lock:
             before = self._add(uri)

@@ -1,6 +1,6 @@
 """``several-places``: an object should be located at each of several places that have nothing in common.
 
-A set of places in ``is located at`` means each of them, as any other set does; users often mean any of them.
+A set of places in ``is located at`` means each of them, like every other set; users often mean one of them.
 """
 
 from __future__ import annotations

@@ -182,6 +182,7 @@ def _parameter(slot: str, taken: Collection[str]) -> str:
 def _function(sentence: str, parameters: tuple[tuple[str, str], ...], roles: list[str], names: set[str]) -> str:
     decorators = "".join(f"@{role}({sentence!r})\n" for role in _ROLES if role in roles)
     arguments = "".join(f", {name}: {kind}" for name, kind in parameters)
+    # The generated function must not pass before the user has written it.
     return (
         f"{decorators}def {_name(sentence, names)}(context: Context{arguments}) -> None:\n"
         "    raise NotImplementedError\n"

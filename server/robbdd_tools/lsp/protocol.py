@@ -37,8 +37,7 @@ class Protocol(LanguageServerProtocol):
         """
         end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
-        # pygls does not declare the types of these arguments.
-        yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType]
+        yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType] -- no types in pygls
 
     @property
     def exit_code(self) -> int:

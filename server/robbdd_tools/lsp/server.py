@@ -57,8 +57,7 @@ class RobbddServer(LanguageServer):
     """
 
     def __init__(self) -> None:
-        # pygls does not declare the types of its further arguments.
-        super().__init__(  # pyright: ignore[reportUnknownMemberType]
+        super().__init__(  # pyright: ignore[reportUnknownMemberType] -- pygls leaves further arguments untyped
             "robbdd-lsp", __version__, protocol_cls=Protocol
         )
         self.project = Project()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
@@ -16,6 +16,8 @@ class WorkDone:
 
     def __init__(self, server: RobbddServer, token: str) -> None:
         self._progress = server.work_done_progress
+        self._untyped: Any = self._progress
+        """The same, where pygls leaves an answer or a value untyped."""
         self._token = token
         window = server.client_capabilities.window
         self._is_supported = bool(window is not None and window.work_done_progress)
@@ -26,8 +28,7 @@ class WorkDone:
         if not self._is_supported or self._is_shown:
             return
         try:
-            # pygls does not declare the type of the client's (empty) answer.
-            await self._progress.create_async(self._token)  # pyright: ignore[reportUnknownMemberType]
+            await self._untyped.create_async(self._token)
         except JsonRpcException:
             self._is_supported = False
             return
@@ -45,5 +46,5 @@ class WorkDone:
         """End the progress with a final message."""
         if self._is_shown:
             self._progress.end(self._token, types.WorkDoneProgressEnd(message=words))
-        # pygls keeps tokens forever, and does not declare the type of their values.
-        self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]
+        # pygls keeps tokens forever.
+        self._untyped.tokens.pop(self._token, None)

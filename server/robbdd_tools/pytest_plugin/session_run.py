@@ -164,7 +164,7 @@ def session_plan(
 ) -> Plan:
     """Return the plan of models. Several models are named after their common folder. Raises ``SelectionError``."""
     path = Path(files[0].name if len(files) == 1 else os.path.commonpath([file.name for file in files]))
-    return Plan.of_files(str(path), path, files, replace(options.selection, only=only))
+    return Plan.of_files(str(path), path, files, replace(options.selection, is_wanted=only))
 
 
 def model_files(files: Iterable[ModelFile]) -> tuple[ModelFile, ...]:

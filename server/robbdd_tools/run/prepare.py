@@ -60,7 +60,7 @@ class RunRequest:
     scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario
     executions: tuple[Execution, ...] | None = None
     repeat: int | None = None
-    only: Callable[[ScenarioSpec], bool] | None = None
+    is_wanted: Callable[[ScenarioSpec], bool] | None = None
 
     def wants(self, variant: Iri) -> bool:
         """Return whether a variant is to be run."""
@@ -106,7 +106,7 @@ def _parts_of(requests: Sequence[RunRequest]) -> Iterator[_Part]:
         below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
         executions = request.chosen_executions()
-        yield from _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
+        yield from _parts(plan, request.name, request.seed, executions, below, request.repeat, request.is_wanted)
 
 
 def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
@@ -152,7 +152,7 @@ class _Part:
     writer: SpecWriter
     folder: str
     repeat: int
-    only: Callable[[ScenarioSpec], bool] | None
+    is_wanted: Callable[[ScenarioSpec], bool] | None
 
     def specs(self, folder: Path) -> Iterator[ScenarioSpec]:
         """Write the features of this part into the run folder ``folder`` and yield the scenarios to execute."""
@@ -170,7 +170,7 @@ class _Part:
 
     def _chosen(self, feature: str, story: Story, scenario: ScenarioText) -> Iterator[ScenarioSpec]:
         specs = self.writer.specs(feature, story.iri, scenario, self.repeat)
-        return (spec for spec in specs if self.only is None or self.only(spec))
+        return (spec for spec in specs if self.is_wanted is None or self.is_wanted(spec))
 
 
 def _parts(

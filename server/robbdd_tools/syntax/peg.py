@@ -38,7 +38,7 @@ class State:
         self.results: dict[tuple[str, int], tuple[int, Any] | None] = {}
         self._blank: dict[int, int] = {}
 
-    def skip(self, position: int) -> int:
+    def after_blank(self, position: int) -> int:
         """Return the position after white space and comments."""
         found = self._blank.get(position)
         if found is None:
@@ -82,7 +82,7 @@ class Compiled:
             # Thousands of nested brackets: report an error at the innermost one reached.
             found = None
         if found is not None:
-            end = state.skip(found[0])
+            end = state.after_blank(found[0])
             if end == len(text):
                 return found[1], state
             state.fail(end, ("rule", "EOF"))
@@ -145,7 +145,7 @@ class Compiled:
                     attributes[name].append(value)
                 else:
                     attributes[name] = value
-            attributes["_tx_position"] = state.skip(position)
+            attributes["_tx_position"] = state.after_blank(position)
             attributes["_tx_position_end"] = end
             return end, node
 
@@ -240,7 +240,7 @@ def _terminal(pattern: str, expected: tuple[str, str]) -> Parse:
     match = re.compile(pattern, re.MULTILINE).match
 
     def parse(state: State, position: int, _: Log) -> int:
-        start = state.skip(position)
+        start = state.after_blank(position)
         found = match(state.text, start)
         if found is not None:
             return found.end()
@@ -273,7 +273,7 @@ def _assigned_text(name: str, read: Parse) -> Parse:
     def parse(state: State, position: int, log: Log) -> int:
         end = read(state, position, log)
         if end >= 0:
-            log.append((name, state.text[state.skip(position) : end]))
+            log.append((name, state.text[state.after_blank(position) : end]))
         return end
 
     return parse

@@ -134,7 +134,7 @@ def selection_of(place: StoredRun, manifest: Manifest, keys: Collection[str]) ->
     Raises ``NoSuchRun``.
     """
     return Selection(
-        only=lambda spec: scenario_key(spec) in keys,
+        is_wanted=lambda spec: scenario_key(spec) in keys,
         seed=place.record().user_seed,
         default_seed=manifest.seed,
         default_substitutions=substitutions_of(manifest.scenarios),

@@ -61,7 +61,7 @@ class Selection:
     pairwise: int | None = None
     seed: int | None = None
     choices: Sequence[Choice] = ()
-    only: Callable[[ScenarioSpec], bool] | None = None
+    is_wanted: Callable[[ScenarioSpec], bool] | None = None
     default_seed: int = DEFAULT_SEED
     substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -74,8 +74,9 @@ class Selection:
         return Wanted(self.where, self.first, self.sample, self.pairwise, seed)
 
     def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Return whether a specified execution satisfies ``choices`` and ``only``."""
-        return all(choice.admits_spec(spec) for choice in self.choices) and (self.only is None or self.only(spec))
+        """Return whether a specified execution satisfies ``choices`` and ``is_wanted``."""
+        is_chosen = all(choice.admits_spec(spec) for choice in self.choices)
+        return is_chosen and (self.is_wanted is None or self.is_wanted(spec))
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,7 +266,7 @@ class _Planner:
             frozenset(variant.iri for variant in variants),
             scenarios,
             executions,
-            only=selection.admits_spec,
+            is_wanted=selection.admits_spec,
         )
 
     def _in_instances(self, model: AcceptanceModel, executions: Sequence[Execution]) -> AcceptanceModel:

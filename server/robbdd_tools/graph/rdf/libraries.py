@@ -81,7 +81,7 @@ def _keep_sparql_off_the_network() -> None:
     def refuse_service(_context: object, part: Any) -> Any:
         if part.name == "ServiceGraphPattern":
             raise UnusableShapes("a SPARQL query in a shape can read only this model: SERVICE is not supported")
-        raise NotImplementedError  # rdflib then evaluates the part itself
+        raise NotImplementedError  # the signal by which rdflib evaluates the part itself
 
     loose: Any = sparql
     loose.SPARQL_LOAD_GRAPHS = False
