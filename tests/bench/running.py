@@ -21,7 +21,8 @@ from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 from robbdd_tools.protocol.messages import RunMessage, RunStarted, ScenarioFinished
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.scheduler import Policy, Scheduler
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import Scheduler
 from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
 from world.worlds import BALL, CUBE, OTHER_WS, PANDA, execution, pick_place
 

@@ -23,7 +23,7 @@ from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run import scheduler
 from robbdd_tools.run.recording import Recording, pending
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import FOLDER, LOCK, RunStore
 from robbdd_tools.workbench.run import Run
 from run.recorded import RECORD, execution, spec

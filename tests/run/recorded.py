@@ -21,7 +21,7 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.recording import Recording
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import RunRecord, RunStore, StoredRun
 
 RECORD = RunRecord("m.bdd", "../../../m.bdd", "abc", 1, "0.1.0")

@@ -8,7 +8,7 @@ from kit import write_manifest
 from robbdd_tools.protocol.messages import RunStarted
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.recording import Recording
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import RunStore, StoredRun
 from run.recorded import RECORD, execution, spec
 

@@ -27,7 +27,8 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
 )
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
-from robbdd_tools.run.scheduler import Policy, Scheduler, ignore_event
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import Scheduler, ignore_event
 from world.worlds import scenario
 
 CLAUSES = tuple(ClauseSpec(line, f"t:c{line}", f"c{line}", "then", "it is so") for line in (5, 6))

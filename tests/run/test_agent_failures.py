@@ -13,7 +13,7 @@ from robbdd_tools.protocol.messages import (
     RunStarted,
     UserCodeFailed,
 )
-from robbdd_tools.run.scheduler import TIMEOUT, Policy
+from robbdd_tools.run.run_policy import TIMEOUT, Policy
 from run.scripted_agents import (
     FAULT,
     LATE,

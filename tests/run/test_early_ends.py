@@ -9,7 +9,8 @@ from robbdd_tools.protocol.messages import (
     ScenarioFinished,
     ScenarioStarted,
 )
-from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import CANCELLED, STOPPED
 from run.scripted_agents import (
     Stage,
     manifest_of,

@@ -11,7 +11,7 @@ import pytest
 from robbdd_tools.base.processes import run_for
 from robbdd_tools.protocol.messages import LogLine, RunFinished
 from robbdd_tools.run.launch import LOGS, MAX_STRANGE_LINES
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from run.test_scheduler import HOLDS, prepared, reasons_without_places, run, verdicts
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform != "linux", reason="/proc")]

@@ -13,8 +13,8 @@ from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.protocol.messages import RunFinished, RunStarted
 from robbdd_tools.run.recording import OtherSimulator, Recording, pending
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.scheduler import STOPPED as STOPPED_ENDING
-from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.run.store import RunStore
 from run.recorded import execution, rows, spec
 from run.recordings import COUNT, MANIFEST, begun, leave, run_whole

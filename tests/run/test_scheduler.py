@@ -26,7 +26,8 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy, Scheduler, ignore_event
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Scheduler, ignore_event
 from world.worlds import CUBE, SCENE, Steps, write_run
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")]

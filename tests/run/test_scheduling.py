@@ -23,7 +23,7 @@ from robbdd_tools.run.agent_log import LIMIT
 from robbdd_tools.run.agent_worker import AgentWorker
 from robbdd_tools.run.debugging import debugged
 from robbdd_tools.run.launch import Agent
-from robbdd_tools.run.scheduler import TIMEOUT, Policy
+from robbdd_tools.run.run_policy import TIMEOUT, Policy
 from run.scripted_agents import (
     FAULT,
     Stage,

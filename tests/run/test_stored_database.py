@@ -18,7 +18,7 @@ from robbdd_tools.run import database as databases
 from robbdd_tools.run.database import DatabaseProblem, open_database, read_database
 from robbdd_tools.run.missing_files import missing_parts
 from robbdd_tools.run.recording import Recording, pending
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import KEPT, NoSuchRun, RunStore, begin_in, run_in
 from robbdd_tools.run.stored_results import read_status
 from run.recorded import RECORD, execution

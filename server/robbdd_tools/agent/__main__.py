@@ -31,10 +31,12 @@ def _main() -> int:
     # Execution needs no graphics: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     # Install the signal handlers before the slow imports.
+    from robbdd_tools.agent.clause_debugger import begin_pauses
     from robbdd_tools.agent.execute_requests import read_requests
     from robbdd_tools.agent.runner import run_folder
 
-    return run_folder(sys.argv[1], read_requests(os.fdopen(orders, encoding="utf-8")), messages)
+    is_taken = begin_pauses().take
+    return run_folder(sys.argv[1], read_requests(os.fdopen(orders, encoding="utf-8"), is_taken), messages)
 
 
 if __name__ == "__main__":

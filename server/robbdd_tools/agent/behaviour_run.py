@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
 from time import perf_counter
@@ -108,6 +108,7 @@ class BehaviourRun:
     - ``cut_short``: the verdict on behaviours that had not ended when the execution was stopped.
     - ``failed``: true when a behaviour has failed.
     - ``wall``: the wall time spent in s.
+    - ``observers``: called after each sample, when the events of its time have been emitted, and at the end.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -127,6 +128,7 @@ class BehaviourRun:
         self.reaches = ReachSampler(self.simulation)
         self._controllers: dict[str, PickPlace] = {}
         self.stamps: list[EventStamp] = []
+        self.observers: list[Callable[[], None]] = []
         self.remark = ""
         self.finished = False
         self._muted = False
@@ -156,12 +158,15 @@ class BehaviourRun:
         known = len(self.stamps), self.completed
         for _ in range(LOOK):
             self._tick()
+            if self.finished:
+                self._observe()
             if self.finished or known != (len(self.stamps), self.completed):
                 return
 
     def _tick(self) -> None:
         try:
             next(self._script)
+            self._observe()
             self.simulation.tick()
         except StopIteration:
             self.finished = True
@@ -181,6 +186,10 @@ class BehaviourRun:
             reason = f"the execution was stopped after {self._timing.timeout:g} s of simulated time"
             self.cut_short = unknown(reason, Cause.TIME_LIMIT)
             self._note(reason)
+
+    def _observe(self) -> None:
+        for observe in self.observers:
+            observe()
 
     def _scenario(self) -> Iterator[None]:
         self._emit(START)

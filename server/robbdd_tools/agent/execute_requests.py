@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from queue import SimpleQueue
 from time import sleep
 from typing import TextIO
@@ -13,21 +13,22 @@ PAUSE = 0.2
 """Seconds between two checks that the parent process is alive, after it has closed the stream."""
 
 
-def read_requests(stream: TextIO) -> Iterator[str]:
-    """Yield the lines of a stream as they arrive.
+def read_requests(stream: TextIO, is_taken: Callable[[str], bool] = lambda _: False) -> Iterator[str]:
+    """Yield the lines of a stream as they arrive, except those that ``is_taken`` has taken, in the reading thread.
 
     When the stream ends and the parent process is gone, this process exits immediately, even while it executes a
     scenario. If the parent is alive, all orders are completed.
     """
     lines: SimpleQueue[str | None] = SimpleQueue()
-    threading.Thread(target=_read, args=(stream, os.getppid(), lines), daemon=True).start()
+    threading.Thread(target=_read, args=(stream, is_taken, os.getppid(), lines), daemon=True).start()
     while (line := lines.get()) is not None:
         yield line
 
 
-def _read(stream: TextIO, parent: int, lines: SimpleQueue[str | None]) -> None:
+def _read(stream: TextIO, is_taken: Callable[[str], bool], parent: int, lines: SimpleQueue[str | None]) -> None:
     for line in stream:
-        lines.put(line)
+        if not is_taken(line):
+            lines.put(line)
     lines.put(None)
     while os.getppid() == parent:
         sleep(PAUSE)

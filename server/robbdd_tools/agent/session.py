@@ -9,6 +9,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from robbdd_tools.agent.clause_debugger import current_pauses
+from robbdd_tools.agent.clause_watch import WatchedClauses
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.feature_wording import feature_wording, remarks_on_wording
 from robbdd_tools.agent.printed_output import finish_output
@@ -93,6 +95,7 @@ class ScenarioRun:
         self._verdicts: list[ClauseJudged] = []
         self._broken: SceneError | None = None
         self._faults: set[str] = set()
+        self._pauses, self._watched = current_pauses(), WatchedClauses(self._clauses, self._calls, self._events)
         self._began = perf_counter()
         channel.send(ScenarioStarted(index))
         edited = [text for line, _, text in texts if text != self._open.get(line)]
@@ -115,6 +118,7 @@ class ScenarioRun:
                     self._channel.send(LogLine("info", text))
                 self._report_left_out(self._execution)
                 self._show(self._execution)
+                self._pauses.begin(self._index, self._spec, self._watched, self._execution)
             except SceneError as error:
                 self._broken = error
                 raise
@@ -207,10 +211,11 @@ class ScenarioRun:
         simulated = execution.simulated if execution is not None else 0.0
         stepping = execution.stepping if execution is not None else 0.0
         resampled = execution.simulation.world.resampled if execution is not None else 0
-        wall = perf_counter() - self._began
+        wall = perf_counter() - self._began - self._pauses.waited
         finish_output()
         contacts = () if execution is None else self._contacts(execution)
         self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping, resampled, contacts))
+        self._pauses.end()
 
     def _contacts(self, execution: Execution) -> tuple[Contact, ...]:
         trace = execution.complete(execution.trace)
@@ -249,6 +254,7 @@ class ScenarioRun:
     def _judged(self, line: int, text: str, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
             self._channel.send(ClauseStarted(self._index, line))
+        self._pauses.step(line)
         try:
             self.set_up()
         except SceneError as error:
@@ -274,6 +280,7 @@ class ScenarioRun:
         message = judged(self._index, line, verdict)
         self._verdicts.append(message)
         self._channel.send(message)
+        self._pauses.judged(message)
 
 
 def _unknown(error: SceneError) -> Verdict:

@@ -26,9 +26,14 @@ FRAMES = 4000
 def show(path: Path) -> dict[str, Any]:
     """Return the contents of a trace that can be displayed. Raises ``UnreadableTrace``."""
     seen = read_views(path, ("/geometry", "/tf"))
-    transforms = [message["transforms"] for _, message in seen["/tf"]]
-    if not transforms or not seen["/geometry"]:
+    if not seen["/tf"] or not seen["/geometry"]:
         raise UnreadableTrace(f"{path} was stored by an older version and has no shapes: run the scenario again")
+    return shown(seen)
+
+
+def shown(seen: Mapping[str, Sequence[tuple[float, Any]]]) -> dict[str, Any]:
+    """Return the views of an execution (time in s and message, by topic) in the form in which they are displayed."""
+    transforms = [message["transforms"] for _, message in seen["/tf"]]
     geometry = seen["/geometry"][0][1]
     start = {frame["child_frame_id"]: _pose(frame) for frame in transforms[0]}
     numbers = {name: number for number, name in enumerate(start)}

@@ -12,7 +12,7 @@ from robbdd_tools.commands.execute import follow
 from robbdd_tools.commands.output import print_line, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.commands.runs import print_unfinished
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.replaying import Replay
 from robbdd_tools.workbench.stored import store_at
 

@@ -14,7 +14,7 @@ from robbdd_tools.workbench.resuming import stored_policy, unfinished_run
 from robbdd_tools.workbench.stored import store_at
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.stored_results import RunStatus
 
 

@@ -21,7 +21,7 @@ from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.debugging import check_debugger
 from robbdd_tools.run.pictures import NoPictures, no_display, render_videos, render_violations
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.model import ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.plan import Plan, Selection

@@ -12,7 +12,7 @@ from robbdd_tools.commands.arguments import allow_selection, positive
 if TYPE_CHECKING:
     from robbdd_tools.commands.resume import ResumeOptions
     from robbdd_tools.commands.run import Outputs, RunOptions
-    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.run_policy import Policy
 
 
 CHOOSING = (
@@ -153,7 +153,7 @@ def _outputs(options: argparse.Namespace, *, keep: bool = True) -> Outputs:
 def policy(options: argparse.Namespace) -> Policy:
     """Return the run policy of the parsed arguments."""
     from robbdd_tools.run.debugging import debugged
-    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.run_policy import Policy
 
     found = Policy(stop_on_failure=options.stop_on_failure)
     found = found if options.jobs is None else replace(found, jobs=options.jobs)

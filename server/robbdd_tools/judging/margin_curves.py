@@ -75,6 +75,27 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
     replace_file(path, json.dumps(document, ensure_ascii=False) + "\n")
 
 
+def fluent_margins(fluent: Fluent, evidence: WindowEvidence) -> FloatArray:
+    """Return the margin of a fluent at each sample of a window, shape (n,): over its sets, the one that decides.
+
+    It is infinite at samples at which the fluent's condition does not hold. Raises the errors of evaluators, which may
+    be users' code.
+    """
+    every = (list(group) for group in alternatives(fluent))
+    worst = [np.min([_margins(fluent, evidence, one) for one in group], axis=0) for group in every]
+    best: FloatArray = np.max(worst, axis=0)
+    return best
+
+
+def unit_of(fluent: Fluent, trace: Trace, regions: Regions) -> str:
+    """Return the unit of a fluent's margins; empty if they have none."""
+    if fluent.predicate.unit_for is not None:
+        with suppress(KeyError, IndexError, StopIteration):
+            first = next(next(alternatives(fluent)))
+            return fluent.predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), first.arguments)
+    return fluent.predicate.unit
+
+
 def _margins(fluent: Fluent, evidence: WindowEvidence, instance: Instance) -> FloatArray:
     """Return the margins of one instance, shape (n,); infinite at samples at which its condition does not hold."""
     margins = margins_of(fluent.predicate, evidence, instance.arguments)
@@ -85,22 +106,12 @@ def _margins(fluent: Fluent, evidence: WindowEvidence, instance: Instance) -> Fl
 
 
 def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Curve:
-    predicate = fluent.predicate
-    every = [list(group) for group in alternatives(fluent)]
-
     def margins(rows: Window) -> FloatArray | None:
-        if predicate.evaluate is None:
+        if fluent.predicate.evaluate is None:
             return None
-        evidence = WindowEvidence(trace, rows, regions)
         try:
-            worst = [np.min([_margins(fluent, evidence, one) for one in group], axis=0) for group in every]
-            best: FloatArray = np.max(worst, axis=0)
+            return fluent_margins(fluent, WindowEvidence(trace, rows, regions))
         except Exception:  # no record, an empty set, failing users' code: the verdict reports it
             return None
-        return best
 
-    unit = predicate.unit
-    if predicate.unit_for is not None:
-        with suppress(KeyError, IndexError):
-            unit = predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), every[0][0].arguments)
-    return curve(Curve(unit=unit, negated=negated), fluent.time, trace, margins)
+    return curve(Curve(unit=unit_of(fluent, trace, regions), negated=negated), fluent.time, trace, margins)

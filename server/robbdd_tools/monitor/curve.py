@@ -54,16 +54,17 @@ def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margi
     if isinstance(selected, NoWindow) and constraint.some_time and selected.recorded is not None:
         selected = selected.recorded
     if isinstance(selected, NoWindow):
-        return _drawn(replace(found, reason=selected.reason), trace.times, whole)
+        return with_points(replace(found, reason=selected.reason), trace.times, whole)
     rows = slice(selected.first, selected.last + 1)
     times, inside = trace.times[rows], margins(selected)
     found = replace(found, start=round(float(times[0]), DIGITS), end=round(float(times[-1]), DIGITS))
     if whole is not None and inside is not None and np.array_equal(whole[rows], inside, equal_nan=True):
-        return _drawn(found, trace.times, whole)
-    return _drawn(found, times, inside)
+        return with_points(found, trace.times, whole)
+    return with_points(found, times, inside)
 
 
-def _drawn(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve:
+def with_points(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve:
+    """Return a curve with its points: finite ``margins`` (n,) at ``times`` (n,) s. Many points are thinned."""
     if margins is None:
         return found
     finite = np.isfinite(margins)

@@ -13,6 +13,7 @@ from robbdd_tools.base.plain import finite, from_plain
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
+from robbdd_tools.protocol.pauses import Paused, SceneWritten
 
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: if set, a window shows each scenario in real time."""
@@ -152,6 +153,8 @@ RunMessage = (
     | UserCodeFailed
     | Output
     | DebuggerAwaited
+    | Paused
+    | SceneWritten
     | LogLine
     | RunFinished
 )
@@ -167,6 +170,8 @@ _TYPES: dict[str, type[RunMessage]] = {
         UserCodeFailed,
         Output,
         DebuggerAwaited,
+        Paused,
+        SceneWritten,
         LogLine,
         RunFinished,
     )

@@ -13,6 +13,8 @@ LIMIT = "ROBBDD_LIMIT"
 """Environment variable: limit of an agent's wall time per scenario, s; 0: no limit."""
 DEBUG_PORT = "ROBBDD_DEBUG_PORT"
 """Environment variable: the port on which an agent waits for a debugger."""
+PAUSING = "ROBBDD_PAUSING"
+"""Environment variable: if set, a debugger controls the pauses of an agent by its orders (``protocol.pauses``)."""
 DEBUG_HOST = "127.0.0.1"
 """Address of that port. A client of that port can execute code, so other machines must not reach it."""
 STARTUP = 120.0

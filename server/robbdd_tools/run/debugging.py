@@ -8,7 +8,7 @@ from importlib.util import find_spec
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.protocol.run_folder import DEBUG_HOST
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 
 
 class NoDebugger(RobbddError):
@@ -24,6 +24,11 @@ def check_debugger() -> None:
 def debugged(policy: Policy, port: int) -> Policy:
     """Return the policy of a run that waits for a debugger on a port: one process, without a time limit."""
     return replace(policy, jobs=1, timeout=0.0, debug=port)
+
+
+def pausing(policy: Policy) -> Policy:
+    """Return the policy of a run whose pauses a debugger controls: one process, without a time limit."""
+    return replace(policy, jobs=1, timeout=0.0, pausing=True)
 
 
 def free_port() -> int:

@@ -17,7 +17,7 @@ from robbdd_tools.base.descendants import MARK, end_marked
 from robbdd_tools.base.interpreter import start
 from robbdd_tools.base.processes import describe_exit, end_group, request_end
 from robbdd_tools.protocol.messages import Execute, LogLine, RunMessage, decode, encode
-from robbdd_tools.protocol.run_folder import CRASH, DEBUG_PORT
+from robbdd_tools.protocol.run_folder import CRASH, DEBUG_PORT, PAUSING
 from robbdd_tools.protocol.run_folder import LIMIT as TIME_LIMIT
 from robbdd_tools.run.agent_log import LIMIT, BoundedLog
 from robbdd_tools.run.crashes import Crash, take_crash
@@ -41,7 +41,7 @@ class Agent:
 
     ``number`` names the log of the process. ``module`` is the Python module to run, and ``arguments`` are its arguments
     after the run folder. ``log_limit`` is the maximum size of the log in bytes. With ``debug``, the process waits for a
-    debugger on this port.
+    debugger on this port. With ``pausing``, it obeys the orders of a debugger (``protocol.pauses``).
     """
 
     def __init__(
@@ -53,6 +53,7 @@ class Agent:
         log_limit: int = LIMIT,
         timeout: float = 0.0,
         debug: int | None = None,
+        pausing: bool = False,
     ) -> None:
         folder = folder.absolute()
         self._work = folder / WORK
@@ -61,11 +62,14 @@ class Agent:
         self._log = BoundedLog(folder / LOGS / f"agent-{number}.log", log_limit)
         self._mark = f"{os.getpid()}-{next(_numbers)}"
         self._base = folder / LOGS / f"agent-{number}"
+        self._ordering = threading.Lock()
         self.crash = Crash()
         """Position of the process in the user's code when it ended, available after its last message."""
         more = {MARK: self._mark, CRASH: str(self._base), TIME_LIMIT: str(timeout)}
         if debug is not None:
             more[DEBUG_PORT] = str(debug)
+        if pausing:
+            more[PAUSING] = "1"
         with self._log.stream as log:
             self._process = start(module, str(folder), *arguments, folder=self._work, log=log, more=more)
         self._leftovers = threading.Thread(target=self._end_leftovers, daemon=True)
@@ -81,11 +85,12 @@ class Agent:
         self.order(encode(Execute(index)))
 
     def order(self, line: str) -> None:
-        """Send an order of one line. If the process has ended, ``messages`` ends, too."""
+        """Send an order of one line, from any thread. If the process has ended, ``messages`` ends, too."""
         assert self._process.stdin is not None
         try:
-            self._process.stdin.write(line + "\n")
-            self._process.stdin.flush()
+            with self._ordering:
+                self._process.stdin.write(line + "\n")
+                self._process.stdin.flush()
         except (OSError, ValueError):  # the pipe is broken or already closed
             pass
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.protocol.specs import Manifest
-    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import RunRecord, StoredRun
 
 

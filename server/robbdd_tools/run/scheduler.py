@@ -6,17 +6,14 @@ task killed a worker, and both are needed here.
 
 from __future__ import annotations
 
-import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import count
 from math import inf
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
-from typing import Self
 
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.fault_places import sources_in
@@ -35,43 +32,20 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
     never_judged,
 )
+from robbdd_tools.protocol.pauses import DebugOrder, Paused, SceneWritten, encode_order
 from robbdd_tools.protocol.run_folder import STARTUP
 from robbdd_tools.protocol.specs import Manifest
-from robbdd_tools.run.agent_log import LIMIT
 from robbdd_tools.run.agent_worker import AgentWorker, grace
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.message_order import OrderedMessages
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.tasks import earlier_than, grouped
 
-TIMEOUT = 300.0
-"""Default wall time of a scenario, s."""
 ATTEMPTS = 3
 """Number of processes in a row that may end before they start a scenario; then the run is given up."""
 CANCELLED = "the run was cancelled"
 STOPPED = "not executed: the run was stopped at the first failure"
-
-
-@dataclass(frozen=True, slots=True)
-class Policy:
-    """The policy of a run.
-
-    It has the number of parallel processes, the wall time for each scenario in s, whether the first failure ends the
-    run, ``log_limit``, the maximum size of each process's log in bytes, and the port of a debugger.
-    """
-
-    jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
-    timeout: float = TIMEOUT
-    stop_on_failure: bool = False
-    log_limit: int = LIMIT
-    debug: int | None = None
-
-    @classmethod
-    def of(cls, *, jobs: int | None = None, timeout: float | None = None, stop_on_failure: bool = False) -> Self:
-        """Return a policy in which every argument that is ``None`` has its default value."""
-        policy = cls(stop_on_failure=stop_on_failure)
-        policy = policy if jobs is None else replace(policy, jobs=jobs)
-        return policy if timeout is None else replace(policy, timeout=timeout)
 
 
 Event = tuple[AgentWorker, RunMessage | None]
@@ -144,6 +118,11 @@ class Scheduler:
         self._waiting = deque[tuple[int, ...]]([(index,)])
         yield from self._until_done()
 
+    def order(self, order: DebugOrder) -> None:
+        """Send an order of a debugger to all processes. This may be called from any thread."""
+        for worker in list(self._workers):
+            worker.agent.order(encode_order(order))
+
     def close(self) -> None:
         """End the processes."""
         stop(worker.agent for worker in self._workers)
@@ -193,8 +172,15 @@ class Scheduler:
 
     def _launch(self) -> AgentWorker:
         policy, number = self._policy, next(self._agent_numbers)
-        agent = Agent(self._folder, number, log_limit=policy.log_limit, timeout=policy.timeout, debug=policy.debug)
-        worker = AgentWorker(agent, debugged=policy.debug is not None)
+        agent = Agent(
+            self._folder,
+            number,
+            log_limit=policy.log_limit,
+            timeout=policy.timeout,
+            debug=policy.debug,
+            pausing=policy.pausing,
+        )
+        worker = AgentWorker(agent, debugged=policy.is_debugged)
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
@@ -258,7 +244,9 @@ class Scheduler:
                     self._shared_outputs = worker.shared_outputs
                     self._watch(message)
                     yield message
-            case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output() | DebuggerAwaited():
+            case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output():
+                yield from self._pass_on(worker, message)
+            case DebuggerAwaited() | Paused() | SceneWritten():
                 yield from self._pass_on(worker, message)
             case ClauseJudged():
                 worker.judged.add(message.line)

@@ -19,7 +19,8 @@ from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.recording import failure_reason
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import CANCELLED, Policy
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.run import begin_recording

@@ -11,7 +11,8 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged, LogLine, Output, UserCodeFailed
 from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import Policy, Scheduler
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import Scheduler
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result
 from robbdd_tools.workbench.run import begin_recording
 

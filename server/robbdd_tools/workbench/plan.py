@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all, specs_of
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
 from robbdd_tools.workbench.scene_choice import NOTHING_TO_PLACE, SceneChoiceError, in_instances, uses_instances
 from robbdd_tools.workbench.substitution import refuse_unknown, substitute

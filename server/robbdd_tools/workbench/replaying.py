@@ -20,7 +20,8 @@ from robbdd_tools.protocol.messages import RunStarted
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.prepare import FEATURES
 from robbdd_tools.run.results import RunResults, finished_in
-from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import CANCELLED, Scheduler
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.unchanged import model_now, refusal
 

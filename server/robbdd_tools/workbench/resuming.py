@@ -15,7 +15,7 @@ from robbdd_tools.base.locks import acquire
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.run.prepare import FEATURES, MODEL_STEPS
 from robbdd_tools.run.recording import Recording, pending
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import LATEST, LOCK, NoSuchRun, RunStore, StoredRun, shown_path
 from robbdd_tools.run.stored_results import FINISHED, RUNNING, STOPPED, RunStatus, read_status
 from robbdd_tools.run.used_files import prepared_digest

@@ -16,7 +16,8 @@ from robbdd_tools.protocol.messages import ScenarioFinished
 from robbdd_tools.run.debugging import debugged
 from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.scheduler import CANCELLED, Scheduler
 from robbdd_tools.run.store import RunRecord, relative_model_path, shown_path
 from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refuse_user_code
@@ -26,6 +27,7 @@ from robbdd_tools.workbench.stored import Recorded
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.pauses import DebugOrder
     from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
     from robbdd_tools.workbench.plan import Plan
@@ -108,6 +110,10 @@ class Run(Recorded):
         """
         self._reason = self._reason or reason
         self._scheduler.cancel()
+
+    def order(self, order: DebugOrder) -> None:
+        """Send an order of a debugger to the run's processes. This may be called from any thread."""
+        self._scheduler.order(order)
 
     def messages(self) -> Iterator[RunMessage]:
         """Yield the messages of the run in the order of the manifest.

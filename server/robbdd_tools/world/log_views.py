@@ -26,8 +26,11 @@ PERIOD = 1 / 16
 WORLD = "world"
 
 
-def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
-    """Yield the views of an execution topic by topic; each is stamped with simulated time."""
+def views(simulation: Simulation, trace: Trace, *, last: bool = False) -> Iterator[View]:
+    """Yield the views of an execution topic by topic; each is stamped with simulated time.
+
+    With ``last``, there is a picture of the last sample, too.
+    """
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     model = simulation.model
@@ -40,7 +43,8 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
     scratch = mujoco.MjData(model)
     states = simulation.recorder.states
     moving = [body for body in bodies if model.body_weldid[body] != 0]
-    for row in range(0, len(states), EVERY):
+    rows = dict.fromkeys((*range(0, len(states), EVERY), *((len(states) - 1,) if last else ())))
+    for row in rows:
         time = float(trace.times[row])
         scratch.qpos[:] = states[row]
         mujoco.mj_kinematics(model, scratch)
