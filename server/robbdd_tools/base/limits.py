@@ -42,6 +42,8 @@ class Limit:
 
 MODEL_SIZE = Limit("model-size", 8 * MIB, "bytes")
 """A model, setting, template, query or shapes file; hand-written ones are far smaller."""
+SOURCE_SIZE = Limit("source-size", MIB, "bytes")
+"""A Python file or a robot's model, with its included files, that is read while editing; reading one takes 0.5 s."""
 RESULT_SIZE = Limit("result-size", 512 * MIB, "bytes")
 """A file of a run (results, manifest, trace), or a mesh or texture of a scene's model."""
 MESSAGE_SIZE = Limit("message-size", 64 * MIB, "bytes")
@@ -69,6 +71,7 @@ LIMITS: Mapping[str, Limit] = {
     limit.name: limit
     for limit in (
         MODEL_SIZE,
+        SOURCE_SIZE,
         RESULT_SIZE,
         MESSAGE_SIZE,
         HEADER_SECONDS,

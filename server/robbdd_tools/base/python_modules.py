@@ -1,39 +1,38 @@
-"""Find Python modules and the names in them from files and syntax trees. Nothing is imported or executed."""
+"""Find Python modules by their files, and names in them by syntax trees. Nothing is imported or executed."""
 
 from __future__ import annotations
 
-import ast
+import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib.machinery import BuiltinImporter, FrozenImporter, PathFinder
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import UnreadableFile, file_state, load_text, path_to_uri
+from robbdd_tools.base.files import file_state, path_to_uri
 from robbdd_tools.base.interpreter import inherited_paths
+from robbdd_tools.base.python_outline import UNKNOWN, Outline, outline
 
 if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
 
-    from robbdd_tools.base.files import FileState
+    from robbdd_tools.base.python_outline import PythonName
+
+MAX_LISTED = 2000
+"""Entries of a folder that are searched for modules."""
+MAX_IMPORTS = 8
+"""Imports that are followed from a name to its definition."""
 
 
 @dataclass(frozen=True, slots=True)
-class ModuleNames:
-    """The names that a module binds at its top level.
+class PythonPlace:
+    """Where a name of Python code is defined: a file, and the name in it; ``None`` for the module itself."""
 
-    ``is_complete`` is false if other code may bind more: ``from … import *``, ``__getattr__``, ``globals()``. ``error``
-    is the syntax error of a file that is not Python, with its line.
-    """
-
-    names: frozenset[str]
-    is_complete: bool = True
-    error: str = ""
-
-
-UNKNOWN = ModuleNames(frozenset(), is_complete=False)
+    path: Path
+    name: PythonName | None
+    outline: Outline
 
 
 def find_module(name: str, folder: Path) -> ModuleSpec | None:
@@ -59,54 +58,90 @@ def _spec(path: str, search: list[str], *, top: bool) -> ModuleSpec | None:
     return found or PathFinder.find_spec(path, search)
 
 
-def module_names(spec: ModuleSpec) -> ModuleNames:
+def module_outline(spec: ModuleSpec) -> Outline:
     """Return the names in a module that was found; ``UNKNOWN`` if it is not a readable Python file."""
-    if spec.origin is None or not spec.origin.endswith(".py"):
-        return UNKNOWN
-    state = file_state(path_to_uri(Path(spec.origin)))
-    return UNKNOWN if state is None else _names_in(state)
+    path = _source(spec)
+    state = None if path is None else file_state(path_to_uri(path))
+    return UNKNOWN if state is None else outline(state)
 
 
-@lru_cache(maxsize=32)
-def _names_in(state: FileState) -> ModuleNames:
+def module_place(module: str, folder: Path) -> PythonPlace | None:
+    """Return the file of a module; ``None`` if there is no such Python file."""
+    spec = find_module(module, folder)
+    path = None if spec is None else _source(spec)
+    return None if spec is None or path is None else PythonPlace(path, None, module_outline(spec))
+
+
+def attribute_place(module: str, attribute: str, folder: Path) -> PythonPlace | None:
+    """Return where an attribute of a module is defined; imports of the name are followed.
+
+    If the definition is not in a Python file, this is the last import.
+    """
+    found: PythonPlace | None = None
+    for _ in range(MAX_IMPORTS):
+        place = module_place(module, folder)
+        name = None if place is None else place.outline.names.get(attribute)
+        if place is None or name is None:
+            submodule = module_place(f"{module}.{attribute}", folder)
+            return submodule or found
+        found = PythonPlace(place.path, name, place.outline)
+        if name.imported is None:
+            return found
+        source = _absolute(name.imported[0], module, folder)
+        if source is None:
+            return found
+        module, attribute = source, name.imported[1]
+        if not attribute:
+            return module_place(module, folder) or found
+    return found
+
+
+def modules_in(package: str, folder: Path) -> list[str]:
+    """Return the modules next to the models of a folder and on ``PYTHONPATH``, or those of a package, sorted."""
+    if package:
+        spec = find_module(package, folder)
+        places = [] if spec is None else list(spec.submodule_search_locations or ())
+    else:
+        places = [str(folder), *inherited_paths()]
+    return sorted({name for place in places for name in _modules(place)})
+
+
+def _modules(place: str) -> Iterator[str]:
+    for entry in _entries(place):
+        name = entry.name.removesuffix(".py")
+        if name != entry.name and name.isidentifier() and name != "__init__":
+            yield name
+        elif entry.name.isidentifier() and not entry.name.startswith("__") and _has_code(entry):
+            yield entry.name
+
+
+def _has_code(entry: os.DirEntry[str]) -> bool:
     try:
-        root = ast.parse(load_text(state.path))
-    except SyntaxError as error:
-        return ModuleNames(frozenset(), error=f"line {error.lineno}: {error.msg}")
-    except (UnreadableFile, OSError, ValueError):
-        return UNKNOWN
-    names = frozenset(_bound(root.body))
-    open_ended = {"*", "__getattr__"} & names or any(_is_dynamic(node) for node in ast.walk(root))
-    return ModuleNames(names, is_complete=not open_ended)
+        return entry.is_dir() and any(inner.name.endswith(".py") for inner in _entries(entry.path))
+    except OSError:
+        return False
 
 
-def _is_dynamic(node: ast.AST) -> bool:
-    match node:
-        case ast.Call(func=ast.Name(id="globals" | "exec" | "setattr" | "vars")) | ast.Global():
-            return True
-        case _:
-            return False
+def _entries(place: str) -> list[os.DirEntry[str]]:
+    try:
+        with os.scandir(place) as found:
+            return list(islice(found, MAX_LISTED))
+    except (OSError, ValueError):
+        return []
 
 
-def _bound(statements: Iterable[ast.stmt]) -> Iterator[str]:
-    """Yield the names that statements bind in their scope."""
-    for statement in statements:
-        match statement:
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                yield name
-            case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
-                yield from (alias.asname or alias.name.partition(".")[0] for alias in aliases)
-            case _:
-                yield from _targets(statement)
+def _source(spec: ModuleSpec) -> Path | None:
+    return Path(spec.origin) if spec.origin is not None and spec.origin.endswith(".py") else None
 
 
-def _targets(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement, or a statement inside it, binds."""
-    for child in ast.iter_child_nodes(statement):
-        if isinstance(child, ast.stmt):
-            yield from _bound((child,))
-        elif isinstance(child, ast.ExceptHandler | ast.match_case):
-            yield from _bound(child.body)
-        else:
-            named = (node for node in ast.walk(child) if isinstance(node, ast.Name))
-            yield from (node.id for node in named if isinstance(node.ctx, ast.Store))
+def _absolute(source: str, module: str, folder: Path) -> str | None:
+    """Return the full name of a module that ``module`` imports; leading dots are relative to its package."""
+    level = len(source) - len(source.lstrip("."))
+    if not level:
+        return source
+    spec = find_module(module, folder)
+    is_package = spec is not None and spec.submodule_search_locations is not None
+    parts = module.split(".")
+    kept = parts[: len(parts) - level + int(is_package)]
+    name = ".".join((*kept, *filter(None, (source[level:],))))
+    return name or None

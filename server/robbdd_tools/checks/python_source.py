@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
-from robbdd_tools.base.python_modules import find_module, module_names
+from robbdd_tools.base.python_modules import find_module, module_outline, modules_in
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -44,7 +44,7 @@ def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     if own is None or not own.parent.is_dir():
         return
     for placed in file.declarations:
-        for source in _sources(placed.declaration):
+        for source in code_names(placed.declaration):
             problem = missing(source.module.text, source.attribute.text, own.parent)
             if problem is not None:
                 name = source.attribute if problem.is_attribute else source.module
@@ -56,7 +56,8 @@ def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 @kept_with_key
-def _sources(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
+def code_names(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
+    """Return the names of Python code in a declaration."""
     root = declaration.tree
     if not isinstance(
         root, tree.Implementation | tree.Observation | tree.Policy | tree.BehaviourTree | tree.SceneInstance
@@ -69,17 +70,27 @@ def missing(module: str, attribute: str, folder: Path) -> Missing | None:
     """Return the problem with the name of Python code for a file in a folder; ``None`` if the name exists."""
     spec = find_module(module, folder)
     if spec is None:
-        near = _near(module, sorted(path.stem for path in folder.glob("*.py")))
+        near = _near_modules(module, folder)
         hint = f"; did you mean '{near[0]}'?" if near else f": put {_file(module)} next to this file"
         return Missing(f"there is no module '{module}'{hint}", tuple(near))
-    found = module_names(spec)
+    found = module_outline(spec)
     if found.error:
         return Missing(f"the module '{module}' cannot be imported: {spec.origin}, {found.error}")
+    if found.unread:
+        return Missing(f"the names in the module '{module}' are not checked: {found.unread}", is_attribute=True)
     if found.is_complete and attribute not in found.names:
         near = _near(attribute, sorted(name for name in found.names if not name.startswith("_")))
         hint = f"; did you mean '{near[0]}'?" if near else ""
         return Missing(f"the module '{module}' has no '{attribute}'{hint}", tuple(near), is_attribute=True)
     return None
+
+
+def _near_modules(module: str, folder: Path) -> list[str]:
+    """Return modules with similar names, in the innermost package of the name that exists."""
+    package, dot, name = module.rpartition(".")
+    if package and find_module(package, folder) is None:
+        return [f"{one}.{name}" for one in _near_modules(package, folder)]
+    return [f"{package}{dot}{one}" for one in _near(name, modules_in(package, folder))]
 
 
 def _near(name: str, known: Iterable[str]) -> list[str]:

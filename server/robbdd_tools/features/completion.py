@@ -14,6 +14,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
+from robbdd_tools.features.python_code import code_choices
 from robbdd_tools.features.quoted_completion import quoted
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import Elsewhere, beside, loaded
@@ -46,7 +47,8 @@ _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet
 class Completion:
     """One completion proposal.
 
-    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, or the kind of a symbol.
+    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, one of ``CODE_KINDS``, or the
+      kind of a symbol.
     - ``text``: the text to insert. The text of a snippet contains placeholders.
     - ``span``: the text that ``text`` replaces.
     - ``whole``: like ``span``, but including the rest of the word after the cursor.
@@ -80,6 +82,9 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
     if cursor.quoted is not None:
         return list(_in_quotes(uri, analysis, offset))
     language = language_of(uri)
+    named = list(_code(uri, cursor, _word_end(analysis.document.text, offset)))
+    if named:
+        return named
     before, expected = _expected(language, cursor.before)
     if expected is None:
         return []
@@ -251,6 +256,13 @@ def _needs_closing(text: str, cursor: Cursor) -> bool:
 def _word_end(text: str, offset: int) -> int:
     match = re.compile(r"[\w\-.]*").match(text, offset)
     return offset if match is None else match.end()
+
+
+def _code(uri: str, cursor: Cursor, end: int) -> Iterator[Completion]:
+    """Yield the modules or the attributes of Python code that may be named at a cursor."""
+    whole = Span(cursor.span.start, end)
+    for label, kind, detail, rank, name in code_choices(uri, cursor.before, cursor.word):
+        yield Completion(label, kind, detail, label, cursor.span, whole, rank, origin=(uri, name))
 
 
 def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:

@@ -10,6 +10,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.features.describe import describe_import, describe_path, describe_words
 from robbdd_tools.features.markdown import code, code_block
+from robbdd_tools.features.python_code import CODE_KINDS, describe_code
 from robbdd_tools.features.sentences import word_meaning
 from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.names.index import language_of
@@ -41,6 +42,8 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
             return _word(path)
         case "folder":
             return f"**folder** {code(unquote(uri.rstrip('/').rpartition('/')[2]))}"
+        case kind if kind in CODE_KINDS:
+            return describe_code(uri, path)
         case "file":
             return _file(snapshot, uri)
         case _:

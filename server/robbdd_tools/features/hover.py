@@ -9,6 +9,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import describe, describe_import, result_words
 from robbdd_tools.features.goto_definition import symbol_at
+from robbdd_tools.features.outside_names import outside_name_at
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
@@ -49,7 +50,7 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
             # The description of a clause has its results.
             return replace(words, judged=hint.worst)
     else:
-        words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset)
+        words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset) or _elsewhere(snapshot, uri, offset)
     if hint is None:
         return words
     if words is None:
@@ -80,6 +81,12 @@ def _import(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
         if link.span.contains(offset) and link.problem is None:
             return Hover(describe_import(snapshot, link.uri), link.span)
     return None
+
+
+def _elsewhere(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+    found = outside_name_at(snapshot, uri, offset)
+    markdown = None if found is None else found.describe()
+    return None if found is None or markdown is None else Hover(markdown, found.span)
 
 
 def _worst_of(definition: Definition, findings: Findings) -> Judged | None:

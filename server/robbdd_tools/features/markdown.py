@@ -51,6 +51,10 @@ def code_block(text: str, language: str) -> str:
     first, *rest = text.rstrip().splitlines()
     lines = [first, *textwrap.dedent("\n".join(rest)).splitlines()] if rest else [first]
     shown = lines if len(lines) <= MAX_LINES else [*lines[: MAX_LINES - 1], "…"]
-    name = "robbdd" if language == "bdd" else f"robbdd-{language}"
+    return fenced("\n".join(shown), "robbdd" if language == "bdd" else f"robbdd-{language}")
+
+
+def fenced(text: str, language: str) -> str:
+    """Return a text as a code block of any language."""
     fence = "`" * _longer_than_runs(text, 3)
-    return "\n".join((f"{fence}{name}", *shown, fence))
+    return "\n".join((f"{fence}{language}", text, fence))

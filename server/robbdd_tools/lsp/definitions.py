@@ -12,6 +12,7 @@ from robbdd_tools.features.call_hierarchy import Call, callable_at, calls_from, 
 from robbdd_tools.features.document_links import document_links
 from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.implementation import implementation
+from robbdd_tools.features.outside_names import outside_name_at
 from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.lsp.convert import document_of, symbol_kind
@@ -31,7 +32,7 @@ def register_definitions(server: RobbddServer) -> None:
 
 def _register_targets(server: RobbddServer) -> None:
     for method in (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_DECLARATION):
-        _register_target(server, method, _definitions)
+        _register_definition(server, method)
     _register_target(server, types.TEXT_DOCUMENT_TYPE_DEFINITION, type_definition)
     # Implementations may be in unopened files.
     _register_target(server, types.TEXT_DOCUMENT_IMPLEMENTATION, implementation, everywhere=True)
@@ -50,9 +51,22 @@ def _register_target(server: RobbddServer, method: str, targets: Targets, everyw
         return await ls.analyse(find)
 
 
-def _definitions(snapshot: Snapshot, uri: str, offset: int) -> list[tuple[str, Span]]:
-    found = definition(snapshot, uri, offset)
-    return [] if found is None else [found]
+def _register_definition(server: RobbddServer, method: str) -> None:
+    @server.feature(method)
+    async def define(ls: RobbddServer, params: types.TextDocumentPositionParams) -> list[types.Location]:
+        def find(snapshot: Snapshot) -> list[types.Location]:
+            document = document_of(snapshot, params.text_document.uri)
+            offset = ls.convert.offset(document, params.position)
+            found = definition(snapshot, document.uri, offset)
+            if found is not None:
+                return [ls.convert.location(snapshot, *found)]
+            named = outside_name_at(snapshot, document.uri, offset)
+            place = None if named is None else named.definition()
+            if place is None:
+                return []
+            return [types.Location(uri=place.uri, range=ls.convert.range(place.document, place.span))]
+
+        return await ls.analyse(find)
 
 
 def _register_calls(server: RobbddServer) -> None:
