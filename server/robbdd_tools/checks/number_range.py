@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf
+from math import floor, inf, pi
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
+from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.settings import setting_of
-from robbdd_tools.checks.finding import change, finding, written_text
+from robbdd_tools.checks.finding import change, finding, removal, written_text
 from robbdd_tools.graph.write.units import LENGTHS
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
@@ -37,7 +38,8 @@ class _Quantity:
     def wanted(self) -> str:
         number = "a whole number" if self.whole else "a number"
         if self.high < inf:
-            return f"{number} from {self.low:g} to {self.high:.0f}"
+            start = f"greater than {self.low:g} and up" if self.above else f"from {self.low:g}"
+            return f"{number} {start} to {self.high:.10g}"
         return f"{number} {'greater than' if self.above else 'of at least'} {self.low:g}"
 
     def allows(self, value: float) -> bool:
@@ -47,6 +49,11 @@ class _Quantity:
 
 _FRICTION = _Quantity("a friction", low=setting_of("friction").low, high=setting_of("friction").high)
 _RATE = _Quantity("an update rate", above=True)
+USUAL_RATE = 100
+"""Update rate (Hz) that a fix writes, as in policies that quick fixes create."""
+_PIXELS = _Quantity("a number of pixels", low=1.0, whole=True)
+_SPEED = _Quantity("a speed limit", above=True)
+_WHOLE_TURN = {"deg": 360.0, "rad": 2 * pi}
 _REPEAT = _Quantity("the number of repetitions", low=1.0, whole=True)
 _SEED = _Quantity("a seed", high=setting_of("seed").high, whole=True)
 _TIMEOUT = _Quantity("a timeout", above=True)
@@ -60,8 +67,13 @@ def number_range(site: Site) -> Iterator[Diagnostic]:
         message = f"{quantity.words} cannot be {text}: write {quantity.wanted}"
         fixes = _fixes(site, number, quantity)
         yield finding(site, number, Severity.ERROR, CODE, message, fixes=fixes)
-    if isinstance(site.tree, tree.Policy):
-        yield from _swapped(site, site.tree)
+    match site.tree:
+        case tree.Policy():
+            yield from _swapped(site, site.tree)
+        case tree.SceneInstance() | tree.KinematicTree():
+            yield from _reversed_limits(site, site.tree)
+        case _:
+            pass
 
 
 @kept_with_key
@@ -85,8 +97,18 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
             yield node.horizon, _Quantity("a horizon")
         case tree.GroundTruth():
             yield from ((node.rate, _RATE), (node.noise, _Quantity("noise")), (node.latency, _Quantity("a latency")))
-        case tree.SimulatedStates() | tree.Transforms() | tree.Sensor() | tree.Camera():
+        case tree.Camera():
             yield node.rate, _RATE
+            yield node.fov, _Quantity("a field of view", high=_WHOLE_TURN[node.fov_unit], above=True)
+            yield from ((number, _PIXELS) for number in _numbers(node.resolution))
+        case tree.SimulatedStates() | tree.Transforms() | tree.Sensor():
+            yield node.rate, _RATE
+        case tree.Inertia():
+            yield node.mass, _Quantity("a mass")
+        case tree.Gripper():
+            yield node.stroke, _Quantity("a stroke", above=True)
+        case tree.Model() if node.velocity is not None:
+            yield from ((number, _SPEED) for number in _numbers(node.velocity))
         case tree.LinearDistance():
             yield node.max_time_offset, _Quantity("a time offset")
         case tree.Distance():
@@ -97,15 +119,49 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
             pass
 
 
+def _numbers(vector: tree.Vector) -> Iterator[tree.Number]:
+    yield from (number for number in vector.values if isinstance(number, tree.Number))
+
+
 def _fixes(site: Site, number: tree.Number, quantity: _Quantity) -> tuple[Fix, ...]:
-    """Return the fix that removes the sign, or that writes 1 for the number of repetitions.
+    """Return the fix that removes the sign, else one that writes the usual number or removes an optional entry.
 
     There are no other fixes, because the intended number is uncertain.
     """
     if number.value < 0 and quantity.allows(-number.value):
         positive = written_text(site, number).lstrip("-")
         return (change(site, f"Change to {positive}", number, positive),)
-    return (change(site, "Change to 1", number, "1"),) if quantity is _REPEAT else ()
+    if quantity is _TIMEOUT:
+        return _without_timeout(site, number)
+    usual = None
+    if quantity is _RATE:
+        usual = USUAL_RATE
+    elif quantity.whole:
+        usual = floor(min(max(number.value, quantity.low), quantity.high))
+    return () if usual is None else (change(site, f"Change to {usual}", number, str(usual)),)
+
+
+def _without_timeout(site: Site, number: tree.Number) -> tuple[Fix, ...]:
+    """Return the fix that removes ``timeout: 0 seconds``: the default then applies."""
+    text, span = site.file.document.text, site.span(number)
+    start = text.rindex("timeout", 0, span.start)
+    end = text.find("seconds", span.end)
+    if end < 0:
+        return ()
+    return (removal(site.file.document, "Remove the timeout: the default applies", Span(start, end + len("seconds"))),)
+
+
+def _reversed_limits(site: Site, root: tree.SceneInstance | tree.KinematicTree) -> Iterator[Diagnostic]:
+    for node in walk(root):
+        bounds = list(_numbers(node.range)) if isinstance(node, tree.Limit) else []
+        if len(bounds) == 2 and bounds[0].value > bounds[1].value:
+            yield _reversed(site, bounds[0], bounds[1])
+
+
+def _reversed(site: Site, low: tree.Node, high: tree.Node) -> Diagnostic:
+    edits = tuple(Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low)))
+    message = "the bounds are reversed: the lower one comes first"
+    return finding(site, low, Severity.ERROR, CODE, message, fixes=(Fix("Swap the bounds", edits),))
 
 
 def _swapped(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
@@ -113,12 +169,7 @@ def _swapped(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
     distance = rule.evaluator if isinstance(rule, tree.Evaluation) else None
     between = distance.condition if isinstance(distance, tree.LinearDistance) else None
     if isinstance(between, tree.Between) and _metres(between.lower) > _metres(between.upper):
-        low, high = between.lower, between.upper
-        edits = tuple(
-            Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low))
-        )
-        message = "the bounds are reversed: the lower one comes first"
-        yield finding(site, low, Severity.ERROR, CODE, message, fixes=(Fix("Swap the bounds", edits),))
+        yield _reversed(site, between.lower, between.upper)
 
 
 def _metres(distance: tree.Distance) -> float:
