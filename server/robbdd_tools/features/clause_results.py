@@ -102,7 +102,7 @@ def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[Resul
         if rejudged:
             hints.append(_rejudged_hint(clause, rejudged_result(rejudged, judged, now)))
         elif judged:
-            hints.append(_clause_hint(clause, fresh or judged, stale=not fresh))
+            hints.append(clause_hint(clause, fresh or judged, stale=not fresh))
     return hints
 
 
@@ -243,7 +243,8 @@ def _line(judged: Judged) -> str:
     return f"{scenario.values}: {judgement.said}"
 
 
-def _clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
+def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
+    """Return the hint of a clause with some verdicts."""
     ranked = sorted(judged, key=lambda entry: entry[1].rank)
     worst = ranked[0][1]
     failing = tuple(entry for entry in ranked if entry[1].outcome != "holds")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
@@ -10,8 +10,10 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.features.clause_results import clause_hints, pass_rate, substitutions
+from robbdd_tools.features.clause_results import clause_hints, execution_rate, pass_rate, substitutions
+from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.markdown import code, code_block, literal
+from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.rejudged_results import MARK
 from robbdd_tools.features.run_verdicts import NOTHING
@@ -26,8 +28,8 @@ from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.clause_results import ResultHint
-    from robbdd_tools.features.run_verdicts import Findings
+    from robbdd_tools.features.clause_results import PassRate, ResultHint
+    from robbdd_tools.features.run_verdicts import Findings, JudgedScenario
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.project import Snapshot
@@ -226,6 +228,17 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
             for hint in clause_hints(snapshot, definition.uri, findings):
                 if hint.span == definition.extent:
                     yield result_words(hint)
+        case SymbolKind.POLICY:
+            for hint in policy_hints(snapshot, definition.uri, findings):
+                if hint.span == definition.extent:
+                    yield result_words(hint)
+        case SymbolKind.EXECUTION:
+            for one in executions_of(snapshot, definition.uri):
+                rate = execution_rate(snapshot, one, findings) if one.iri == definition.iri else None
+                if rate is not None:
+                    known = findings.variants.get(one.variant.iri, ())
+                    own = [scenario for scenario in known if scenario.execution == one.iri]
+                    yield "Last results:\n\n" + "\n".join(_rate_lines(definition.symbol.name, rate, own))
         case SymbolKind.VARIANT | SymbolKind.STORY:
             inside = [
                 variant
@@ -253,11 +266,14 @@ def result_words(hint: ResultHint) -> str:
 def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
     """Yield lines about a variant: its pass rate, and the scenarios that did not pass."""
     rate = pass_rate(snapshot, variant, findings)
-    if rate is None:
-        return
-    yield f"- {code(variant.definition.symbol.name)}: {rate.label}"
-    yield from (f"  - {literal(words)}" for words in substitutions(findings.variants[variant.iri]))
-    failed = [scenario for scenario in findings.variants[variant.iri] if scenario.outcome != "holds"]
+    if rate is not None:
+        yield from _rate_lines(variant.definition.symbol.name, rate, findings.variants[variant.iri])
+
+
+def _rate_lines(name: str, rate: PassRate, scenarios: Sequence[JudgedScenario]) -> Iterator[str]:
+    yield f"- {code(name)}: {rate.label}"
+    yield from (f"  - {literal(words)}" for words in substitutions(scenarios))
+    failed = [scenario for scenario in scenarios if scenario.outcome != "holds"]
     for scenario in failed[:MAX_LISTED]:
         judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
         words = ", ".join(f"{one.name} {one.said}" for one in judged if one.outcome != "holds")

@@ -10,6 +10,7 @@ from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import describe, describe_import, result_words
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.outside_names import outside_name_at
+from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
@@ -40,14 +41,16 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
 
     ``findings`` are the latest results of clauses. Everywhere inside a clause, the hover shows the clause's results.
     """
-    around = [one for one in clause_hints(snapshot, uri, findings) if one.span.contains(offset)]
+    hints = (*clause_hints(snapshot, uri, findings), *policy_hints(snapshot, uri, findings))
+    around = [one for one in hints if one.span.contains(offset)]
     hint = min(around, key=lambda one: one.span.end - one.span.start, default=None)
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
         definition = found[1]
         words = Hover(describe(snapshot, definition, findings), found[0], _worst_of(definition, findings))
-        if hint is not None and definition.extent == hint.span and definition.uri == uri:
-            # The description of a clause has its results.
+        is_own = hint is not None and definition.extent == hint.span and definition.uri == uri
+        if hint is not None and (is_own or definition.kind is SymbolKind.POLICY):
+            # The description of a clause or a policy has its results.
             return replace(words, judged=hint.worst)
     else:
         words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset) or _elsewhere(snapshot, uri, offset)
@@ -90,12 +93,18 @@ def _elsewhere(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
 
 
 def _worst_of(definition: Definition, findings: Findings) -> Judged | None:
-    """Return the worst result of a variant that did not hold."""
-    if definition.kind is not SymbolKind.VARIANT or definition.iri is None:
-        return None
+    """Return the worst result of a variant or of an execution that did not hold."""
+    match definition.kind:
+        case SymbolKind.VARIANT:
+            scenarios = findings.variants.get(definition.iri or "", ())
+        case SymbolKind.EXECUTION:
+            known = (one for several in findings.variants.values() for one in several)
+            scenarios = tuple(one for one in known if one.execution and one.execution == definition.iri)
+        case _:
+            return None
     every = (
         (scenario, judgement)
-        for scenario in findings.variants.get(definition.iri, ())
+        for scenario in scenarios
         for judgement in scenario.clauses.values()
         if judgement.outcome != "holds"
     )

@@ -11,6 +11,7 @@ from robbdd_tools.features.clause_results import appearance, clause_hints, row_h
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.hover import Hover, hover
+from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
@@ -101,7 +102,7 @@ def _register_hints(server: RobbddServer) -> None:
                         padding_left=True,
                         data=appearance(hint),
                     )
-                    for find_hints in (clause_hints, row_hints)
+                    for find_hints in (clause_hints, row_hints, policy_hints)
                     for hint in find_hints(snapshot, document.uri, ls.findings)
                     if wanted.contains(hint.head.end)
                 ]
