@@ -21,8 +21,8 @@ from robbdd_tools.graph.write.build import build_graph
 MOST_AT_A_PLACE = 2
 """Findings at one place that are shown: there may be one for each element of a set of similar ones."""
 REPORTS = sorted((Path(__file__).parent / "reports").glob("*.txt"))
-ON_DISK = {"python-source", "model-file"}
-"""Rules that read files beside the model; ``test_executions.py`` writes these."""
+ON_DISK = {"python-source", "model-file", "model-name"}
+"""Rules that read files beside the model; ``test_executions.py`` and ``test_model_names.py`` write these."""
 
 
 def text_and_graph(case: Fixture) -> Iterator[str]:

@@ -26,6 +26,7 @@ from robbdd_tools.checks.many_scenarios import many_scenarios
 from robbdd_tools.checks.memo import findings_in
 from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
+from robbdd_tools.checks.model_name import model_name
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_emitter import no_emitter
 from robbdd_tools.checks.no_evaluator import no_evaluator
@@ -87,6 +88,7 @@ FILE_RULES = (
     duplicate_iri,
     execution_fit,
     model_file,
+    model_name,
     namespace_iri,
     no_evaluator,
     no_model,

@@ -14,6 +14,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
+from robbdd_tools.features.model_parts_help import part_choices
 from robbdd_tools.features.python_code import code_choices
 from robbdd_tools.features.quoted_completion import quoted
 from robbdd_tools.features.snippets import declaration_snippets
@@ -269,6 +270,10 @@ def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion
     """Yield proposals for the contents of quotes."""
     text = file.document.text
     rest = re.compile(r"[^\"'\n/]*").match(text, offset)
+    for name, kind, facts, typed in part_choices(uri, text, offset):
+        start = offset - len(typed)
+        whole = Span(start, offset if rest is None else rest.end())
+        yield Completion(name, kind, facts, name, Span(start, offset), whole, origin=(uri, ""))
     for name, kind, typed, target in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
         start = offset - len(typed)
         whole = Span(start, offset if rest is None else rest.end())

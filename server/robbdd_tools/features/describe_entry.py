@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
-from robbdd_tools.base.files import file_state
-from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.base.files import file_state, uri_to_path
 from robbdd_tools.catalog.settings import SETTINGS
+from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.describe import describe_import, describe_path, describe_words
 from robbdd_tools.features.markdown import code, code_block
+from robbdd_tools.features.model_parts_help import describe_file
 from robbdd_tools.features.python_code import CODE_KINDS, describe_code
-from robbdd_tools.features.sentences import word_meaning
 from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project
@@ -39,7 +39,7 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
                 None if setting is None else f"`{path}` of {setting.target}: {setting.doc}\n\nIt is {setting.wanted}."
             )
         case "catalog":
-            return _word(path)
+            return describe_catalog_entry(path)
         case "folder":
             return f"**folder** {code(unquote(uri.rstrip('/').rpartition('/')[2]))}"
         case kind if kind in CODE_KINDS:
@@ -56,18 +56,12 @@ def _keyword(language: str, words: str) -> str | None:
     return "\n\n".join(part for part in parts if part is not None) or None
 
 
-def _word(name: str) -> str | None:
-    catalog = load_catalog()
-    behaviour = catalog.behaviours.get(name)
-    if behaviour is not None:
-        return word_meaning(behaviour)
-    model = catalog.robots.get(name) or catalog.objects.get(name)
-    return None if model is None else f"`{name}`\n\n{model.doc}"
-
-
 def _file(snapshot: Snapshot, uri: str) -> str:
     if language_of(uri):
         return describe_import(_with(snapshot, uri), uri)
+    path = uri_to_path(uri)
+    if path is not None and path.suffix.lower() in (".xml", ".mjcf", ".urdf") and path.is_file():
+        return describe_file(path)
     state = file_state(uri)
     size = "" if state is None else f", {state.size:,} bytes"
     return f"**model file** `{unquote(uri.rpartition('/')[2])}`{size}"

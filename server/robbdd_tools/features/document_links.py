@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.checks.model_file import model_path
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -40,17 +41,16 @@ def _models(file: FileAnalysis) -> Iterator[DocumentLink]:
         if own is None or not isinstance(placed.declaration.tree, tree.SceneInstance):
             continue
         for node in walk(placed.declaration.tree):
-            if isinstance(node, tree.SystemPath):
-                found = _file(own.parent, node.path.value)
-                if found is not None:
+            if isinstance(node, tree.SystemPath | tree.RosPath):
+                found = model_path(own.parent, node)
+                if found is not None and _is_file(found):
                     span = Span(node.path.span.start + 1, node.path.span.end - 1).shifted(placed.offset)
                     yield DocumentLink(span, path_to_uri(found))
 
 
-def _file(folder: Path, path: str) -> Path | None:
+def _is_file(path: Path) -> bool:
     try:
-        found = folder / Path(path).expanduser()
-        return found if found.is_file() else None
-    except (OSError, RuntimeError, ValueError):
-        # The home folder of an unknown user, or an invalid file name.
-        return None
+        return path.is_file()
+    except (OSError, ValueError):
+        # An invalid file name.
+        return False

@@ -67,7 +67,7 @@ def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) ->
     for found in _alike(path, uri, files_near(uri, lambda name: Path(name).suffix.lower() in endings)):
         yield Fix(f"Change to '{found}'", (Edit(uri, diagnostic.span, f"{quote}{found}{quote}"),))
     place = own.parent / path
-    if place.suffix.lower() in endings and not path.startswith("~"):
+    if place.suffix.lower() in endings and not place.exists() and not path.startswith("~"):
         text = _EMPTY_MODELS[model.kind].format(name=place.stem)
         yield Fix(f"Create '{path}' with an empty model", (), NewFile(path_to_uri(place), text))
 

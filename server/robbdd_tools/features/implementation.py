@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.features.catalog_source import source_of
 from robbdd_tools.features.describe import variants_of
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.sentences import word_of
@@ -108,15 +106,10 @@ def _phrases_at(snapshot: Snapshot, uri: str, offset: int) -> Iterator[tree.Phra
 
 
 def _python(phrase: tree.PhraseUse) -> Iterator[Place]:
-    """Yield the source file of a catalog word, which is the loaded module that contains the word."""
-    load_catalog()
-    word = word_of(phrase)
-    for _, module in sorted(sys.modules.items()):
-        path = getattr(module, "__file__", None)
-        # A package may re-export the contents of its modules; the word's own file has the longer name.
-        if path and any(value is word for value in vars(module).values()) and not path.endswith("__init__.py"):
-            yield path_to_uri(Path(path)), _FILE_START
-            return
+    """Yield the source file of a catalog word."""
+    path = source_of(word_of(phrase))
+    if path is not None:
+        yield path_to_uri(path), _FILE_START
 
 
 def _same(one: Definition, other: Definition) -> bool:

@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from urllib.parse import quote, urljoin
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.model_paths import package_share, packages
 from robbdd_tools.checks.catalog_entry import known_entries
 from robbdd_tools.names.imports import IMPORTABLE
 from robbdd_tools.names.index import language_of
@@ -15,6 +16,8 @@ from robbdd_tools.names.index import language_of
 _IMPORT = re.compile(r"import\s*[\"']([^\"']*)\Z")
 _MODEL = re.compile(r"\bsys\s+path\s*=\s*[\"']([^\"']*)\Z")
 _ENTRY = re.compile(r"\bcatalog\s*[\"']([^\"']*)\Z")
+_PACKAGE = re.compile(r"\bros\s+pkg\s*=\s*[\"']([^\"']*)\Z")
+_PACKAGED = re.compile(r"\bros\s+pkg\s*=\s*[\"']([^\"']*)[\"']\s*,\s*path\s*=\s*[\"']([^\"']*)\Z")
 MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
     "mjcf": frozenset({".xml", ".mjcf"}),
     "urdf": frozenset({".urdf", ".xml"}),
@@ -30,6 +33,17 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
     """
     if match := _ENTRY.search(line):
         yield from ((name, "catalog", match[1], "") for name in sorted(known_entries(language_of(uri))))
+        return
+    if match := _PACKAGE.search(line):
+        yield from ((name, "folder", match[1], "") for name in packages())
+        return
+    if match := _PACKAGED.search(line):
+        folder, _, last = match[2].rpartition("/")
+        share = package_share(match[1])[0]
+        for entry in () if share is None else _listed(share / folder):
+            if entry.is_dir() or entry.suffix.lower() in frozenset[str]().union(*MODEL_ENDINGS.values()):
+                name, kind = (f"{entry.name}/", "folder") if entry.is_dir() else (entry.name, "file")
+                yield name, kind, last, path_to_uri(entry)
         return
     wanted = frozenset(f".{kind}" for kind in IMPORTABLE.get(language_of(uri), ()))
     match = _IMPORT.search(line)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 FIND = "robbdd_tools.agent.find_faults"
-KNOWN = {FaultKind.MODEL: {"model-file", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
+KNOWN = {FaultKind.MODEL: {"model-file", "model-name", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
 """Codes of the rules that report such faults at a better place: with one of these, such faults are not repeated."""
 _TOKEN = re.compile(r"<[^>\n]*>|[\w.-]+|.")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 
 from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
+from robbdd_tools.base.model_paths import package_share
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.engine import mujoco
@@ -84,13 +84,10 @@ def velocity_limits(source: ModelSource, joints: Sequence[str], default: float) 
 def _path(source: ModelSource) -> Path:
     path = Path(source.name).expanduser()
     if source.kind == "ros":
-        prefixes = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
-        shares = [prefix / "share" / source.package for prefix in prefixes]
-        found = next((share / path for share in shares if share.is_dir()), None)
-        if found is None:
-            where = "AMENT_PREFIX_PATH is not set" if not prefixes else "it is not in AMENT_PREFIX_PATH"
-            raise SceneError(f"the ROS package '{source.package}' cannot be found: {where}", origin=source.origin)
-        return found
+        share, reason = package_share(source.package)
+        if share is None:
+            raise SceneError(f"the ROS package '{source.package}' cannot be found: {reason}", origin=source.origin)
+        return share / path
     return (started_in() if source.origin is None else Path(source.origin.file).parent) / path
 
 

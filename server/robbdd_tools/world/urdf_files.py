@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree
 
 from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.world.engine import mujoco
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-SCHEMES = ("package://", "model://")
 READABLE = (".stl", ".obj", ".msh")
 """Mesh formats that the engine reads."""
 HIDDEN = 3
@@ -71,10 +67,10 @@ def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element)
     if mesh is None:
         return
     name = mesh.get("filename", "")
-    found = next((one for one in _places(path, name) if one.is_file()), None)
+    found = next((one for one in mesh_places(path, name) if one.is_file()), None)
     problem = ""
     if found is None:
-        problem = f"is not on this machine; looked for {', '.join(map(str, _places(path, name)))}"
+        problem = f"is not on this machine; looked for {', '.join(map(str, mesh_places(path, name)))}"
     elif found.suffix.lower() not in READABLE:
         problem = "has a format that the simulator cannot read: convert it to STL or OBJ"
     if found is not None and not problem:
@@ -83,26 +79,3 @@ def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element)
         link.remove(shape)
     else:
         raise ValueError(f"the collision mesh '{name}' of the link '{link.get('name')}' {problem}")
-
-
-def _places(path: Path, name: str) -> Iterator[Path]:
-    """Yield possible places of a mesh: relative to the file, in ROS packages, or in a folder above the file."""
-    scheme = next((scheme for scheme in SCHEMES if name.startswith(scheme)), "")
-    if not scheme:
-        yield (path.parent / name.removeprefix("file://")).absolute()
-        return
-    package, _, inner = name.removeprefix(scheme).partition("/")
-    for prefix in _entries("AMENT_PREFIX_PATH"):
-        yield prefix / "share" / package / inner
-    for folder in _entries("ROS_PACKAGE_PATH"):
-        yield folder / package / inner
-        if folder.name == package:
-            yield folder / inner
-    for folder in path.absolute().parents:
-        if folder.name == package:
-            yield folder / inner
-        yield folder / package / inner
-
-
-def _entries(variable: str) -> list[Path]:
-    return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]

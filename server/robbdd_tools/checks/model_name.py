@@ -1,0 +1,121 @@
+"""``model-name``: a model names a part that its MJCF or URDF file does not have.
+
+The file's text is read, but no engine loads it. The finding is a warning, because the machine that runs the model may
+have another file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.base.model_parts import ModelParts, model_parts
+from robbdd_tools.checks.finding import MAX_OFFERED
+from robbdd_tools.checks.model_file import model_path
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
+
+CODE = "model-name"
+MIN_ALIKE = 0.6
+"""Minimum similarity of a suggestion."""
+MAX_NAMES = 12
+"""Names of a file that a message lists."""
+WANTED: Mapping[str, tuple[str, ...]] = {
+    "map body": ("body",),
+    "tool": ("site", "body"),
+    "actuator": ("actuator", "joint"),
+    "pads": ("geom", "body"),
+}
+"""Kinds of the parts that an entry of a model may name; the first one is usual."""
+ACCEPTED: Mapping[str, tuple[str, ...]] = {**WANTED, "pads": ("geom", "body", "visual")}
+"""The same with kinds that are not suggested."""
+_PLURALS = {"body": "bodies"}
+
+
+@dataclass(frozen=True, slots=True)
+class PartName:
+    """The name of a part in a model: the entry that names it (a key of ``WANTED``), and its text."""
+
+    model: tree.Model
+    entry: str
+    text: tree.Text
+
+
+def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each such name, with similar names as fixes."""
+    own = uri_to_path(file.document.uri)
+    if own is None:
+        return
+    for placed in file.declarations:
+        for named in part_names(placed.declaration):
+            parts = parts_of(named.model, own.parent)
+            if parts is None or parts.may_have(named.text.value, *ACCEPTED[named.entry]):
+                continue
+            span = named.text.span.shifted(placed.offset)
+            message, near = _missing(named, parts)
+            quote = file.document.text[span.start]
+            edits = ((name, (Edit(file.document.uri, span, f"{quote}{name}{quote}"),)) for name in near)
+            fixes = tuple(Fix(f"Change to '{name}'", edit) for name, edit in edits)
+            yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, message, fixes=fixes)
+
+
+@kept_with_key
+def part_names(declaration: Declaration) -> tuple[PartName, ...]:
+    """Return the names of parts in the models of a declaration."""
+    if not isinstance(declaration.tree, tree.SceneInstance):
+        return ()
+    models = [node for node in walk(declaration.tree) if isinstance(node, tree.Model)]
+    return tuple(named for model in models for named in _named(model))
+
+
+def _named(model: tree.Model) -> Iterator[PartName]:
+    for mapping in model.mappings:
+        if mapping.target is not None and mapping.reference.role == "Body":
+            yield PartName(model, "map body", mapping.target)
+    if model.tool is not None:
+        yield PartName(model, "tool", model.tool)
+    if model.gripper is not None:
+        if model.gripper.actuator is not None:
+            yield PartName(model, "actuator", model.gripper.actuator)
+        yield from (PartName(model, "pads", pad) for pad in model.gripper.pads)
+
+
+def parts_of(model: tree.Model, folder: Path) -> ModelParts | None:
+    """Return the parts in the file of a model of a ``.scenex`` in a folder; ``None`` if it names no readable file."""
+    path = model_path(folder, model.source)
+    if path is None or model.kind == "usd" or not path.is_file():
+        return None
+    parts = model_parts(path)
+    return parts if parts.format else None
+
+
+def _missing(named: PartName, parts: ModelParts) -> tuple[str, list[str]]:
+    """Return the message on a name that the file does not have, and similar names."""
+    kinds, name = WANTED[named.entry], named.text.value
+    known = list(dict.fromkeys(part.name for part in parts.names(*kinds)))
+    near = get_close_matches(name, known, n=MAX_OFFERED, cutoff=MIN_ALIKE)
+    message = f"the model's file has no {' or '.join(kinds)} '{name}'"
+    if near:
+        return f"{message}; did you mean '{near[0]}'?", near
+    listed = [f"the {_PLURALS.get(kind, f'{kind}s')} {_listed(parts, kind)}" for kind in kinds]
+    fixes = known if len(known) <= MAX_OFFERED else []
+    return f"{message}; it has {' and '.join(listed)}", fixes
+
+
+def _listed(parts: ModelParts, kind: str) -> str:
+    names = list(dict.fromkeys(part.name for part in parts.names(kind)))
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(f"'{name}'" for name in names[:MAX_NAMES]) + more or "none"
