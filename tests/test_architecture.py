@@ -28,7 +28,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"checks", "features", "gherkin"}),
     frozenset({"run"}),
     frozenset({"workbench"}),
-    frozenset({"lsp", "cli", "commands", "pytest_plugin"}),
+    frozenset({"lsp", "dap", "cli", "commands", "pytest_plugin"}),
     frozenset({"start"}),
 )
 EVIDENCE = {"base", "catalog.api", "monitor", "catalog", "protocol", "traces", "logs"}
@@ -61,7 +61,7 @@ HOMES = {
     "pytest": {"pytest_plugin"},
 }
 # Packages of one rank that may import each other; all others of one rank may not.
-NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli")}
+NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli"), ("commands", "dap")}
 
 
 def modules() -> Iterator[tuple[str, Path]]:

@@ -65,6 +65,7 @@ COMMANDS = (
     "export latest --ros2 -o bag --store runs",
     "new out/bench",
     "doctor",
+    "dap",
 )
 
 
@@ -126,7 +127,8 @@ def test_no_command_contacts_a_server(folder: Path, contacts: tuple[str, list[st
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in COMMANDS:
         process = [sys.executable, "-P", "-m", "robbdd_tools.cli", *command.split()]
-        done = subprocess.run(process, cwd=folder, env=environment(tmp_path), capture_output=True, encoding="utf-8")
+        variables, nothing = environment(tmp_path), subprocess.DEVNULL
+        done = subprocess.run(process, cwd=folder, env=variables, capture_output=True, encoding="utf-8", stdin=nothing)
         assert contacts[1] == [], command
         assert "Traceback" not in done.stderr, (command, done.stderr)
     process = [sys.executable, "-P", "-m", "robbdd_tools.cli", "check", "foreign.jsonld", "--allow-host", "127.0.0.1"]

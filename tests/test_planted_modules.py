@@ -38,6 +38,7 @@ COMMANDS = (
     "import event.ttl -o out/imported.bdd",
     "new out/bench",
     "doctor",
+    "dap",
 )
 AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."
 FINDINGS = 1
@@ -94,7 +95,12 @@ def test_no_command_imports_a_planted_module(inside: bool, python_path: str | No
             names = {path.name for path in hostile.models.iterdir()} | {"."}
             words = [str(hostile.models / word) if word in names else word for word in words]
         done = subprocess.run(
-            [SCRIPTS / "robbdd", *words], cwd=start, env=environment(python_path), capture_output=True, text=True
+            [SCRIPTS / "robbdd", *words],
+            cwd=start,
+            env=environment(python_path),
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
         )
         assert hostile.imported() == [], command
         assert done.returncode in (0, FINDINGS), (command, done.stderr)

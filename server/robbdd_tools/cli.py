@@ -30,6 +30,7 @@ from robbdd_tools.commands.run_arguments import (
     allow_store,
     argument_problem,
     policy,
+    port,
     resume_options,
     run_options,
 )
@@ -195,7 +196,11 @@ def _parser() -> argparse.ArgumentParser:
     doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
     doctor.add_argument("--json", action="store_true", help="print one JSON object")
     doctor.set_defaults(command=_doctor)
-    _allow_refusal(run, replay, judge, export, view)
+    dap = commands.add_parser("dap", help="serve an editor's debugger: pause executions at clauses")
+    text = "wait for one editor on this port of 127.0.0.1 instead of standard input and output"
+    dap.add_argument("--port", metavar="PORT", type=port, help=text)
+    dap.set_defaults(command=_dap)
+    _allow_refusal(run, replay, judge, export, view, dap)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -289,6 +294,12 @@ def _doctor(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.doctor import doctor
 
     return doctor(options.path, as_json=options.json)
+
+
+def _dap(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.dap import serve_debugger
+
+    return serve_debugger(options.port)
 
 
 def _replay(options: argparse.Namespace) -> int:

@@ -35,7 +35,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     allow_scenex(parser)
     allow_policy(parser)
     text = "wait for a debugger of Python code on this port of 127.0.0.1; one process, no time limit (default: 5678)"
-    parser.add_argument("--debug", metavar="PORT", type=_port, nargs="?", const=DEBUGPY_PORT, help=text)
+    parser.add_argument("--debug", metavar="PORT", type=port, nargs="?", const=DEBUGPY_PORT, help=text)
     allow_selection(parser)
     outputs = parser.add_argument_group("outputs")
     outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
@@ -163,7 +163,8 @@ def policy(options: argparse.Namespace) -> Policy:
     return found if options.timeout is None else replace(found, timeout=options.timeout)
 
 
-def _port(text: str) -> int:
+def port(text: str) -> int:
+    """Return the number of a port. Raises ``ArgumentTypeError``."""
     if not text.isdecimal() or not 0 < int(text) < 65536:
         raise argparse.ArgumentTypeError(f"'{text}' is not a port: a number from 1 to 65535")
     return int(text)

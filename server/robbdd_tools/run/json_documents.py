@@ -132,7 +132,8 @@ def _seen(run: StoredRun, index: int) -> dict[str, Any]:
     return json.loads(done.stdout)
 
 
-def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str, *, finished: bool) -> dict[str, Any]:
+def scenario_entry(index: int, spec: ScenarioSpec, verdict: str, *, trace: bool) -> dict[str, Any]:
+    """Return the JSON of a scenario. ``trace`` is whether a trace of it can be shown."""
     return {
         "index": index,
         "name": spec.name,
@@ -144,9 +145,13 @@ def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str, *, f
         "repetition": spec.repetition,
         "seed": spec.seed,
         "verdict": verdict,
-        # A result of an interrupted execution is no evidence.
-        "trace": finished and trace_file(run.folder, index).is_file(),
+        "trace": trace,
     }
+
+
+def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str, *, finished: bool) -> dict[str, Any]:
+    # A result of an interrupted execution is no evidence.
+    return scenario_entry(index, spec, verdict, trace=finished and trace_file(run.folder, index).is_file())
 
 
 def _counts(verdicts: Mapping[str, int]) -> dict[str, int]:
