@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
-import { type Launch, launchSettings } from "./launch";
+import { type Launch, launchSettings, serverVariables } from "./launch";
 import { complain, inform, warn } from "./notices";
 import { type ServerState, afterInstallation, notInstalled } from "./presentation";
 import { isRunNotification } from "./runs/messages";
@@ -11,6 +11,7 @@ import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
 import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
+import { commandBeside } from "./terminal";
 import { isMomentary, problemOf } from "./testing/answers";
 import { RUNNING, type Named, hasUri, isNamed } from "./runTargets";
 
@@ -126,6 +127,16 @@ export class Server implements vscode.Disposable {
       });
     }
     return this.isRunning();
+  }
+
+  /** The command line of the server in use, or undefined, after a message, without one. */
+  async commandLine(): Promise<{ readonly command: string; readonly env: Record<string, string> } | undefined> {
+    if (!(await this.ready()) || this.lookup?.found !== true) {
+      return undefined;
+    }
+    const entries = Object.entries(serverVariables(process.env, this.launch.env));
+    const env = Object.fromEntries(entries.filter((entry): entry is [string, string] => entry[1] !== undefined));
+    return { command: commandBeside(this.lookup.command), env };
   }
 
   private named<T extends object>(target: T): T & Named {

@@ -5,9 +5,11 @@ import type { ComparisonView } from "./panels/comparison/view";
 import type { GraphView } from "./panels/graph/view";
 import type { HistoryView } from "./panels/history/view";
 import { recordingOf } from "./panels/replay/request";
+import type { PausedScene } from "./panels/replay/paused";
 import type { ReplayView } from "./panels/replay/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
+import { TYPE } from "./debugging";
 import { RUNNABLE, modelFor, openModel } from "./models";
 import { inform } from "./notices";
 import { newProject } from "./projects";
@@ -28,13 +30,14 @@ export interface Views {
   readonly studies: StudyView;
   readonly histories: HistoryView;
   readonly comparisons: ComparisonView;
+  readonly scenes: PausedScene;
 }
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
   chooser: RunOptionsChooser,
-  { previews, graphs, replays, studies, histories, comparisons, tests }: Views,
+  { previews, graphs, replays, studies, histories, comparisons, tests, scenes }: Views,
   log: vscode.LogOutputChannel,
   reportIssue: () => unknown,
 ): vscode.Disposable[] {
@@ -45,6 +48,8 @@ export function registerCommands(
     "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
     "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
     "robbdd.debugFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri, debug: true }), RUNNABLE),
+    "robbdd.debugScenario": (target) => withModel(target, debugScenario, RUNNABLE),
+    "robbdd.showPausedScene": () => scenes.open(),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
@@ -73,6 +78,13 @@ export function registerCommands(
     "robbdd.statusActions": () => chooseAction(),
   };
   return Object.entries(handlers).map(([name, handler]) => vscode.commands.registerCommand(name, handler));
+}
+
+/** Debug the first scenario of a model, with breakpoints on its clauses. */
+async function debugScenario(uri: string): Promise<void> {
+  const model = vscode.Uri.parse(uri);
+  const configuration = { type: TYPE, request: "launch", name: "RobBDD", program: model.fsPath };
+  await vscode.debug.startDebugging(vscode.workspace.getWorkspaceFolder(model), configuration);
 }
 
 async function withModel(target: unknown, task: (uri: string) => unknown, languages?: string[]): Promise<void> {

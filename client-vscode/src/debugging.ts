@@ -1,24 +1,39 @@
-// Connect the editor's debugger to a run that waits for one. Its process answers the Debug Adapter Protocol by itself.
+// Debugging: sessions of our own adapter, which pauses simulations at clauses, and of the debugger of Python code, whose
+// process answers the Debug Adapter Protocol by itself.
 import * as vscode from "vscode";
+import type { Server } from "./client";
+import { RUNNABLE, modelFor } from "./models";
 import { complain } from "./notices";
 import type { RunMonitor } from "./runs/monitor";
 
-const TYPE = "robbdd";
+export const TYPE = "robbdd";
 const HOST = "127.0.0.1";
+/** A name in a model, or a path of names. */
+const NAME = /[\w-]+(\.[\w-]+)*/;
 
 export class Debugging implements vscode.Disposable {
   private readonly parts: readonly vscode.Disposable[];
 
-  /** `cancel` ends the run if no debugger can be connected. */
-  constructor(runs: RunMonitor, cancel: () => unknown) {
+  constructor(
+    private readonly server: Server,
+    runs: RunMonitor,
+  ) {
     this.parts = [
+      vscode.debug.registerDebugConfigurationProvider(TYPE, {
+        resolveDebugConfiguration: (_, configuration) => resolved(configuration),
+      }),
       vscode.debug.registerDebugAdapterDescriptorFactory(TYPE, {
-        createDebugAdapterDescriptor: ({ configuration: { port } }) =>
-          typeof port === "number" ? new vscode.DebugAdapterServer(port, HOST) : undefined,
+        createDebugAdapterDescriptor: ({ configuration }) => this.adapter(configuration),
+      }),
+      vscode.languages.registerEvaluatableExpressionProvider(RUNNABLE, {
+        provideEvaluatableExpression: (document, position) => {
+          const range = document.getWordRangeAtPosition(position, NAME);
+          return range && new vscode.EvaluatableExpression(range);
+        },
       }),
       runs.onMessage(({ uri, message }) => {
         if (message.type === "DebuggerAwaited") {
-          void attach(uri, message.port, cancel);
+          void this.attach(uri, message.port);
         }
       }),
     ];
@@ -29,13 +44,37 @@ export class Debugging implements vscode.Disposable {
       part.dispose();
     }
   }
+
+  private async adapter({ request, port }: vscode.DebugConfiguration): Promise<vscode.DebugAdapterDescriptor | undefined> {
+    if (request !== "launch") {
+      return typeof port === "number" ? new vscode.DebugAdapterServer(port, HOST) : undefined;
+    }
+    const line = await this.server.commandLine();
+    return line && new vscode.DebugAdapterExecutable(line.command, ["dap"], { env: line.env });
+  }
+
+  private async attach(uri: string, port: number): Promise<void> {
+    const folder = vscode.workspace.getWorkspaceFolder(vscode.Uri.parse(uri));
+    const configuration = { type: TYPE, request: "attach", name: "RobBDD", port, justMyCode: true };
+    if (!(await vscode.debug.startDebugging(folder, configuration))) {
+      complain("The debugger could not be started: the run is cancelled.");
+      void this.server.execute("robbdd.cancel", {});
+    }
+  }
 }
 
-async function attach(uri: string, port: number, cancel: () => unknown): Promise<void> {
-  const folder = vscode.workspace.getWorkspaceFolder(vscode.Uri.parse(uri));
-  const configuration = { type: TYPE, request: "attach", name: "RobBDD", port, justMyCode: true };
-  if (!(await vscode.debug.startDebugging(folder, configuration))) {
-    complain("The debugger could not be started: the run is cancelled.");
-    void cancel();
+/** Complete a configuration: without launch.json, debug the model in the editor. Undefined: do not debug. */
+async function resolved(configuration: Partial<vscode.DebugConfiguration>): Promise<vscode.DebugConfiguration | undefined> {
+  const known: vscode.DebugConfiguration = { type: TYPE, request: "launch", name: "RobBDD", ...configuration };
+  if (known.request !== "launch") {
+    return known;
   }
+  if (!vscode.workspace.isTrusted) {
+    complain("Trust the workspace to debug its models: a simulation can execute code.", {
+      "Manage Workspace Trust": () => void vscode.commands.executeCommand("workbench.trust.manage"),
+    });
+    return undefined;
+  }
+  const program: unknown = known["program"] ?? (await modelFor(undefined, RUNNABLE))?.fsPath;
+  return program === undefined ? undefined : { ...known, program };
 }

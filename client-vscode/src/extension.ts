@@ -7,6 +7,7 @@ import { noticeModels } from "./milestones";
 import { ComparisonView } from "./panels/comparison/view";
 import { GraphView } from "./panels/graph/view";
 import { HistoryView } from "./panels/history/view";
+import { PausedScene } from "./panels/replay/paused";
 import { ReplayView } from "./panels/replay/view";
 import { StudyView } from "./panels/study/view";
 import { PreviewView } from "./preview/view";
@@ -45,6 +46,7 @@ export function activate(context: vscode.ExtensionContext): void {
   const chooser = new RunOptionsChooser(context.workspaceState);
   const tests = new TestingView(started, runs, chooser);
   const replays = new ReplayView(started, context.extensionUri);
+  const scenes = new PausedScene(context.extensionUri);
   const studies = new StudyView(started, replays, context.extensionUri);
   const comparisons = new ComparisonView(started, replays, context.extensionUri);
   const histories = new HistoryView(started, replays, comparisons, runs, context.extensionUri);
@@ -61,8 +63,9 @@ export function activate(context: vscode.ExtensionContext): void {
     comparisons,
     tests,
     noticeModels(),
-    new Debugging(runs, () => started.execute("robbdd.cancel", {})),
-    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests }, log, () =>
+    new Debugging(started, runs),
+    scenes,
+    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests, scenes }, log, () =>
       reportIssue({ extension: version, server: running }),
     ),
     vscode.workspace.onDidChangeConfiguration((change) => {

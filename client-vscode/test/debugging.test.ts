@@ -1,10 +1,15 @@
 // Debugging: what the server is asked for, and what the debugger connects to.
 import assert from "node:assert/strict";
+import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { LanguageClient } from "./languageclient.kit";
 import { CancellationTokenSource, editor } from "./vscode.kit";
 import { MODEL, client, command, openWindow, until } from "./window.kit";
 
+const LISTS = Object.fromEntries(["shapes", "meshes", "bodies", "workspaces", "events", "clauses"].map((name) => [name, []]));
+const NUMBERS = { shape: [0], data: "" };
+const FRAMES = { times: NUMBERS, poses: NUMBERS, bodies: [] };
+const TRACE = { run: 1, folder: "file:///run", scenario: { name: "t:fetch -- 1" }, frames: FRAMES, ...LISTS };
 const SESSION = { type: "robbdd", request: "attach", name: "RobBDD", port: 4711, justMyCode: true };
 
 /** The options of the runs that the server was asked for; its process waits for a debugger. */
@@ -28,8 +33,46 @@ test("a debugged run is met by a debugger at its port, and its process is the ad
   await command("robbdd.debugFile");
   assert.deepEqual(asked, [{ debug: true }]);
   assert.deepEqual(editor.debugged, [SESSION]);
-  assert.deepEqual({ ...(editor.adapter({ configuration: SESSION }) as object) }, { port: 4711, host: "127.0.0.1" });
-  assert.equal(editor.adapter({ configuration: {} }), undefined);
+  assert.deepEqual({ ...((await editor.adapter({ configuration: SESSION })) as object) }, { port: 4711, host: "127.0.0.1" });
+  assert.equal(await editor.adapter({ configuration: {} }), undefined);
+});
+
+test("F5 without launch.json debugs the model in the editor with the command beside the server", async () => {
+  openWindow();
+  const session = (await editor.resolve(undefined, { program: "/cell/fetch.bdd" })) as Record<string, unknown>;
+  assert.deepEqual(session, { type: "robbdd", request: "launch", name: "RobBDD", program: "/cell/fetch.bdd" });
+  const adapter = (await editor.adapter({ configuration: session })) as { command: string; args: string[] };
+  assert.equal(adapter.command, join(dirname(process.execPath), "robbdd"));
+  assert.deepEqual(adapter.args, ["dap"]);
+});
+
+test("an untrusted workspace is not debugged, and the reason is shown", async () => {
+  openWindow({ trusted: false });
+  assert.equal(await editor.resolve(undefined, { request: "launch", program: "/cell/fetch.bdd" }), undefined);
+  assert.match(editor.problems.join(), /^Trust the workspace to debug its models/);
+  assert.deepEqual(await editor.resolve(undefined, SESSION), SESSION);
+});
+
+test("the paused scene is shown on request and follows each pause", async () => {
+  openWindow();
+  await command("robbdd.showPausedScene");
+  assert.equal(editor.panels.length, 0);
+  const asked: string[] = [];
+  const customRequest = (name: string) => {
+    asked.push(name);
+    return Promise.resolve({ ...TRACE, duration: asked.length });
+  };
+  const session = { type: "robbdd", configuration: { request: "launch" }, customRequest };
+  const tracker = editor.track(session) as { onDidSendMessage: (message: unknown) => void };
+  tracker.onDidSendMessage({ event: "stopped" });
+  assert.deepEqual(asked, [], "nobody looks yet");
+  editor.session = session;
+  await command("robbdd.showPausedScene");
+  tracker.onDidSendMessage({ event: "output" });
+  tracker.onDidSendMessage({ event: "stopped" });
+  await until(() => asked.length === 2);
+  assert.deepEqual(asked, ["robbdd/scene", "robbdd/scene"]);
+  assert.equal(editor.panels.length, 1);
 });
 
 test("so is a run of selected tests", async () => {

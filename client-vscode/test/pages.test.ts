@@ -101,5 +101,5 @@ test("these are all pages, and one module creates them", () => {
   const text = Object.fromEntries(sources.map((path) => [path.replaceAll("\\", "/"), readFileSync(join("src", path), "utf8")]));
   const having = (pattern: RegExp) => Object.keys(text).filter((path) => pattern.test(text[path] ?? "")).sort();
   assert.deepEqual(having(/\.html = /), ["panels/panel.ts"]);
-  assert.deepEqual(having(/new Panel\b/), Object.values(PAGES).map((script) => `panels/${script}/view.ts`));
+  assert.deepEqual(having(/new Panel\b/), [...Object.values(PAGES).map((script) => `panels/${script}/view.ts`), "panels/replay/paused.ts"].sort());
 });

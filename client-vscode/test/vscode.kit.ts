@@ -135,6 +135,10 @@ class Editor {
   readonly lists: (readonly { readonly label: string; readonly description?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
   openRuns = 0;
+  /** Completes the configuration of a session, and listens to its adapter. */
+  resolve: Handler = () => undefined;
+  track: Handler = () => undefined;
+  session: unknown;
   /** Describes the debug adapter of a session. */
   adapter: Handler = () => undefined;
   /** The configurations of debug sessions, and whether they start. */
@@ -172,6 +176,7 @@ class Editor {
     this.texts.length = 0;
     this.debugged.length = 0;
     this.debugs = true;
+    this.session = undefined;
   }
 
   /** Trust the workspace, as the user would. */
@@ -274,6 +279,18 @@ export const commands = {
   },
 };
 
+export class DebugAdapterExecutable {
+  constructor(
+    readonly command: string,
+    readonly args: readonly string[],
+    readonly options: { readonly env: Record<string, string> },
+  ) {}
+}
+
+export class EvaluatableExpression {
+  constructor(readonly range: unknown) {}
+}
+
 export class DebugAdapterServer {
   constructor(
     readonly port: number,
@@ -286,13 +303,24 @@ export const debug = {
     editor.adapter = factory.createDebugAdapterDescriptor;
     return ended;
   },
+  registerDebugConfigurationProvider: (_: string, provider: { resolveDebugConfiguration: Handler }) => {
+    editor.resolve = provider.resolveDebugConfiguration;
+    return ended;
+  },
+  registerDebugAdapterTrackerFactory: (_: string, factory: { createDebugAdapterTracker: Handler }) => {
+    editor.track = factory.createDebugAdapterTracker;
+    return ended;
+  },
+  get activeDebugSession() {
+    return editor.session;
+  },
   startDebugging: (_: unknown, configuration: unknown) => {
     editor.debugged.push(configuration);
     return Promise.resolve(editor.debugs);
   },
 };
 
-export const languages = { getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
+export const languages = { registerEvaluatableExpressionProvider: () => ended, getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
 export const version = "1.91.0";
 export const env = { remoteName: undefined, appName: "Editor" };
 export const extensions = { getExtension: () => undefined };

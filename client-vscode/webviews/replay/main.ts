@@ -65,7 +65,7 @@ function receive(message: ToReplay): void {
     choose(firstClause(trace?.clauses ?? [], message.clause));
     toViolation();
   } else {
-    begin(message.trace, message.recording, message.clause);
+    begin(message.trace, message.recording, message.clause, message.time);
   }
 }
 
@@ -75,8 +75,9 @@ function tell(problem: string): void {
 }
 
 /** Show a trace: in the page's kept state, else at the most relevant clause. */
-function begin(shown: Trace, of: Recording, clause: string | undefined): void {
+function begin(shown: Trace, of: Recording, clause: string | undefined, time: number | undefined): void {
   const kept = host.kept;
+  stage?.dispose();
   trace = shown;
   recording = of;
   clock.duration = shown.duration;
@@ -88,14 +89,14 @@ function begin(shown: Trace, of: Recording, clause: string | undefined): void {
   place.replaceChildren(scene(shown), line.root);
   if (kept?.clause !== undefined && kept.time !== undefined && clause === undefined) {
     choose(kept.clause);
-    clock.seek(kept.time);
+    clock.seek(time ?? kept.time);
     if (kept.camera !== undefined && stage !== undefined) {
       stage.view = kept.camera;
     }
     return;
   }
   choose(firstClause(shown.clauses, clause));
-  clock.seek(violated() ?? 0);
+  clock.seek(time ?? violated() ?? 0);
 }
 
 /** The scene, or a message why there is none. */

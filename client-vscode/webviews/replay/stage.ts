@@ -97,6 +97,12 @@ export class Stage {
     this.request();
   }
 
+  /** Release the graphics memory. */
+  dispose(): void {
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   /** Position of the camera and its target, m. */
   get view(): number[] {
     return [...this.camera.position.toArray(), ...this.controls.target.toArray()];

@@ -15,7 +15,7 @@ export interface Recording {
 }
 
 export type ToReplay =
-  | { readonly type: "trace"; readonly recording: Recording; readonly trace: Trace; readonly clause?: string }
+  | { readonly type: "trace"; readonly recording: Recording; readonly trace: Trace; readonly clause?: string; /** To show, s. */ readonly time?: number }
   | { readonly type: "clause"; readonly clause: string }
   /** Changes since the recording. */
   | { readonly type: "age"; readonly text: string };
