@@ -97,7 +97,7 @@ def test_it_steps_by_moments_and_samples_pauses_and_writes_the_scene(client: Cli
     client.launch(MODEL, stopOnEntry=True, **CHOICE)
     client.event("stopped")
     client.ask("next", threadId=1)
-    assert stopped(client)[0] == "step"
+    assert stopped(client) == ("step", "at-source opens, at-source closes, goal-untouched opens, carry opens")
     first = client.ask("robbdd/scene")
     assert schema_errors("trace.schema.json", first) == []
     client.ask("stepIn", threadId=1)

@@ -232,7 +232,7 @@ class DebugAdapter:
         self._handles.clear()
         spec = self._spec
         assert self._breakpoints is not None
-        names = {clause.line: clause.name for clause in spec.clauses}
+        names = {clause.line: self._launched().title(clause) for clause in spec.clauses}
         text = ", ".join(f"{names[hit.line]} {hit.moment}" for hit in paused.hits)
         body: dict[str, Any] = {"reason": STOPPED[Reason(paused.reason)], "threadId": THREAD, "allThreadsStopped": True}
         if paused.hits:

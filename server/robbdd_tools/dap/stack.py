@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.dap.variables import clause_title
-
 if TYPE_CHECKING:
     from robbdd_tools.protocol.pauses import Paused
     from robbdd_tools.protocol.specs import ScenarioSpec
@@ -24,7 +22,7 @@ def stack_frames(
         if paused.hits and clause.parts and paused.hits[0].part < len(clause.parts):
             iri = clause.parts[paused.hits[0].part]
         place = scenario.place(iri) or scenario.place(clause.iri)
-        frames.append(_frame(0, clause_title(clause), place, first_line))
+        frames.append(_frame(0, scenario.title(clause), place, first_line))
     frames.append(_frame(1, spec.name.rpartition(":")[2], scenario.place(spec.variant), first_line))
     template = scenario.template()
     if template is not None:

@@ -12,7 +12,7 @@ from robbdd_tools.workbench.clause_debugging import scenario_values
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.pauses import BodyState, ClauseState, PartState, Paused
-    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+    from robbdd_tools.protocol.specs import ScenarioSpec
 
 EXPRESSION = re.compile(r"<?[\w:-]+(\.[\w:-]+)*>?")
 NO_EXPRESSION = "write the name of an element, an event, a clause or a variable, such as cube1.position.z"
@@ -171,11 +171,6 @@ def _events(paused: Paused, spec: ScenarioSpec) -> Iterator[Variable]:
         times = [event.time for event in paused.events if event.name == name]
         value = ", ".join(f"{time:.3f} s" for time in times) or "has not occurred"
         yield Variable(_local(name), value)
-
-
-def clause_title(clause: ClauseSpec) -> str:
-    """Return the name of a clause for a stack frame: as in the model, or its sentence."""
-    return clause.name or plain_sentence(clause.sentence)
 
 
 def _local(name: str) -> str:

@@ -24,7 +24,7 @@ from robbdd_tools.workbench.run import Run
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 
 class NoClause(RobbddError):
@@ -116,6 +116,11 @@ class DebuggedScenario:
         """Return the lines (from 1) of a file on which clauses of the execution begin."""
         judged = _iris(self.spec)
         return sorted({place.line for place, iri in self._clauses.get(path_to_uri(path), ()) if iri in judged})
+
+    def title(self, clause: ClauseSpec) -> str:
+        """Return the name of a clause as in the model, such as that of its behaviour; without one, its sentence."""
+        found = self._places.get(clause.iri)
+        return plain_sentence(clause.sentence) if found is None else found.name
 
     def place(self, iri: str) -> Place | None:
         """Return the place of a clause or a scenario."""
