@@ -72,7 +72,7 @@ const bundles = [
   },
   {
     ...shared,
-    entryPoints: Object.fromEntries(["comparison", "graph", "history", "replay", "study"].map((page) => [page, `webviews/${page}/main.ts`])),
+    entryPoints: Object.fromEntries(["comparison", "graph", "history", "replay", "scene", "study"].map((page) => [page, `webviews/${page}/main.ts`])),
     outdir: "out/webviews",
     platform: "browser",
     target: "es2022",

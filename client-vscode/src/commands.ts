@@ -7,10 +7,11 @@ import type { HistoryView } from "./panels/history/view";
 import { recordingOf } from "./panels/replay/request";
 import type { PausedScene } from "./panels/replay/paused";
 import type { ReplayView } from "./panels/replay/view";
+import type { SceneView } from "./panels/scene/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { TYPE } from "./debugging";
-import { RUNNABLE, modelFor, openModel } from "./models";
+import { RUNNABLE, SCENES, modelFor, openModel } from "./models";
 import { inform } from "./notices";
 import { newProject } from "./projects";
 import type { RunOptionsChooser } from "./runs/chooser";
@@ -25,6 +26,7 @@ import type { TestingView } from "./testing/view";
 export interface Views {
   readonly previews: PreviewView;
   readonly graphs: GraphView;
+  readonly drawings: SceneView;
   readonly tests: TestingView;
   readonly replays: ReplayView;
   readonly studies: StudyView;
@@ -37,7 +39,7 @@ export function registerCommands(
   server: Server,
   runs: RunMonitor,
   chooser: RunOptionsChooser,
-  { previews, graphs, replays, studies, histories, comparisons, tests, scenes }: Views,
+  { previews, graphs, drawings, replays, studies, histories, comparisons, tests, scenes }: Views,
   log: vscode.LogOutputChannel,
   reportIssue: () => unknown,
 ): vscode.Disposable[] {
@@ -57,6 +59,14 @@ export function registerCommands(
       withModel(target, (uri) => {
         graphs.open(vscode.Uri.parse(uri));
       }),
+    "robbdd.showScene": (target) =>
+      withModel(
+        target,
+        (uri) => {
+          drawings.open(vscode.Uri.parse(uri));
+        },
+        SCENES,
+      ),
     "robbdd.showStudy": (target) => withModel(target, (uri) => studies.choose(uri)),
     "robbdd.showHistory": (target) => histories.open(target),
     "robbdd.compareRuns": (target) => withModel(target, (uri) => comparisons.choose(uri), RUNNABLE),

@@ -9,6 +9,7 @@ import { GraphView } from "./panels/graph/view";
 import { HistoryView } from "./panels/history/view";
 import { PausedScene } from "./panels/replay/paused";
 import { ReplayView } from "./panels/replay/view";
+import { SceneView } from "./panels/scene/view";
 import { StudyView } from "./panels/study/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
@@ -38,11 +39,13 @@ export function activate(context: vscode.ExtensionContext): void {
     if (state.kind === "ready") {
       previews.refreshSoon();
       graphs.refreshSoon();
+      drawings.refreshSoon();
       void tests.serverReady();
     }
   });
   const previews = new PreviewView(started);
   const graphs = new GraphView(started, context.extensionUri);
+  const drawings = new SceneView(started, context.extensionUri);
   const chooser = new RunOptionsChooser(context.workspaceState);
   const tests = new TestingView(started, runs, chooser);
   const replays = new ReplayView(started, context.extensionUri);
@@ -57,6 +60,7 @@ export function activate(context: vscode.ExtensionContext): void {
     runs,
     previews,
     graphs,
+    drawings,
     replays,
     studies,
     histories,
@@ -65,7 +69,7 @@ export function activate(context: vscode.ExtensionContext): void {
     noticeModels(),
     new Debugging(started, runs),
     scenes,
-    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, histories, comparisons, tests, scenes }, log, () =>
+    ...registerCommands(started, runs, chooser, { previews, graphs, drawings, replays, studies, histories, comparisons, tests, scenes }, log, () =>
       reportIssue({ extension: version, server: running }),
     ),
     vscode.workspace.onDidChangeConfiguration((change) => {

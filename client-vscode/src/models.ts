@@ -9,6 +9,8 @@ const MOST = 200;
 
 /** Languages of runnable files: models and executions. */
 export const RUNNABLE = ["robbdd", "robbdd-bddx"];
+/** Languages of files with executable scenes. */
+export const SCENES = ["robbdd-scenex"];
 
 /**
  * The model named by a menu, else the one in the active editor, else one in another visible editor, else the

@@ -15,6 +15,7 @@ const PAGES: Readonly<Record<string, string>> = {
   "robbdd.showGraph": "graph",
   "robbdd.showHistory": "history",
   "robbdd.showReplay": "replay",
+  "robbdd.showScene": "scene",
   "robbdd.showStudy": "study",
 };
 const POLICY = /^default-src 'none'; script-src 'nonce-(?<nonce>[\w-]{22,})'; style-src https:\/\/\*\.pages\.example$/;
@@ -35,6 +36,8 @@ function answer(): void {
   LanguageClient.answers.set("robbdd/runs", () => ({ runs }));
   LanguageClient.answers.set("robbdd/history", () => history);
   LanguageClient.answers.set("robbdd/compare", () => comparison);
+  const scene = { iri: HOSTILE, name: HOSTILE, ...lists, sampled: [HOSTILE], missing: [HOSTILE], faults: [{ kind: "pose", reason: HOSTILE, source: null }] };
+  LanguageClient.answers.set("robbdd/scene", () => ({ uri: MODEL.toString(), problem: HOSTILE, scenes: [scene] }));
   LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, scenario, frames, ...lists }));
   editor.files.set(`${folder}/results.json`, JSON.stringify({ complete: true, scenarios: [] }));
 }

@@ -11,7 +11,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.outside_names import outside_name_at
+from robbdd_tools.features.outside_names import outside_name_at, outside_references
 from robbdd_tools.names.project import Project, Snapshot
 
 HEAD = "ns x = 'http://x/'\nscene inst (ns=x) s { scene: <s>\nkgraph (ns=x) poses { body foot { frame middle { } } }\n"
@@ -219,3 +219,16 @@ def test_models_without_a_readable_file_have_no_names(tmp_path: Path) -> None:
         text = edited("sys path = 'gantry.xml'", source)
         assert [one for one in findings(tmp_path, text) if one.code == "model-name"] == []
         assert outside_name_at(*opened(tmp_path, text.replace('"tip"', '"t$0ip"'))) is None
+
+
+def test_all_places_in_the_models_that_name_a_part_are_found(tmp_path: Path) -> None:
+    other = ARM.replace("<arms.a>", "<arms.b>").replace("model arm", "model other").replace('"tip"', '"base"')
+    twice = ARM.rstrip()[:-1] + other
+    snapshot, uri, offset = opened(tmp_path, twice.replace('to "base"', 'to "ba$0se"', 1))
+    found, place = outside_references(snapshot, uri, offset)
+    text = snapshot.document(uri).text
+    lines = [text[text.rfind("\n", 0, span.start) + 1 : span.end].strip() for _, span in found]
+    assert sorted(lines) == ['map body <poses.foot> to "base"', 'map body <poses.foot> to "base"', 'tool: "base"']
+    assert place is not None
+    assert place.uri.endswith("gantry.xml")
+    assert outside_references(snapshot, uri, 0) == ([], None)

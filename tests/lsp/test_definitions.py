@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from lsprotocol import types
+from pytest_lsp import LanguageClient
 
 from lsp_kit import CLIENTS, Editor
 
@@ -64,3 +67,27 @@ async def test_highlights_tell_where_a_variable_is_written(editor: Editor) -> No
     assert kinds[editor.position("var thing").line] == write
     assert kinds[editor.position("<thing> is").line] == read
     assert kinds[editor.position("<pick-place.thing>").line] == write
+
+
+async def test_python_code_of_a_model_is_completed_described_and_opened(client: LanguageClient, tmp_path: Path) -> None:
+    editor = Editor(client, tmp_path, "pickplace/pickplace.bddx")
+    editor.open()
+    where = editor.at("attr: apar", after=True)
+    items = await client.text_document_completion_async(types.CompletionParams(**where))
+    assert isinstance(items, list)
+    assert "apart" in [item.label for item in items]
+    hover = await client.text_document_hover_async(types.HoverParams(**where))
+    assert hover is not None
+    assert isinstance(hover.contents, types.MarkupContent)
+    assert "def apart(" in hover.contents.value
+    found = await client.text_document_definition_async(types.DefinitionParams(**where))
+    assert isinstance(found, list | tuple)
+    (place,) = found
+    assert isinstance(place, types.Location)
+    lines = (editor.path.parent / "policies.py").read_text(encoding="utf-8").split("\n")
+    line = lines[place.range.start.line]
+    assert line[place.range.start.character : place.range.end.character] == "apart"
+    assert line.startswith("def apart(")
+    context = types.ReferenceContext(include_declaration=True)
+    uses = await client.text_document_references_async(types.ReferenceParams(context=context, **where))
+    assert [use.uri.rsplit("/", 1)[-1] for use in uses or ()] == ["pickplace.bddx", "policies.py"]

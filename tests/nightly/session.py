@@ -53,7 +53,7 @@ OF_DOCUMENT = (
     "formatting",
 )
 OF_WORKSPACE = ("workspace/symbol", "robbdd/tests", "robbdd/testResults", "robbdd/templates")
-OF_URI = ("robbdd/preview", "robbdd/graph", "robbdd/runs", "robbdd/tests")
+OF_URI = ("robbdd/preview", "robbdd/graph", "robbdd/scene", "robbdd/runs", "robbdd/tests")
 
 
 class Fault(AssertionError):

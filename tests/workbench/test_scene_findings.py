@@ -45,11 +45,23 @@ def found(path: Path) -> list[str]:
 
 
 def test_overlaps_and_unusable_models_are_reported_with_their_places(cell: Path) -> None:
-    rewrite(cell, (ON_THE_TABLE, IN_THE_TABLE), ('tool: "tcp"', 'tool: "tip"'))
+    rewrite(cell, (ON_THE_TABLE, IN_THE_TABLE), ("home: (0,", "home: (9,"))
     unusable, overlap = found(cell.with_name("tidy.bddx"))
-    assert unusable.startswith("67:15: warning: five.xml has no site or body 'tip' for the tool; it has the sites tcp")
-    assert unusable.endswith(" [unusable-model]")
+    assert unusable == (
+        "67:15: warning: the home position 9 of the joint 'yaw' is outside its limits, -3 to 3 in five.xml"
+        " [unusable-model]"
+    )
     assert overlap == "65:10: warning: 'bin' and 'table' overlap by 20 mm: nothing may overlap at the start [overlap]"
+
+
+def test_a_name_that_the_text_of_the_file_lacks_is_reported_once(cell: Path) -> None:
+    rewrite(cell, ('tool: "tcp"', 'tool: "tip"'))
+    assert found(cell.with_name("tidy.bddx")) == []
+    (finding,) = (one for one in load(cell).diagnostics if one.code in ("model-name", "unusable-model"))
+    assert (finding.code, finding.message) == (
+        "model-name",
+        "the model's file has no site or body 'tip'; did you mean 'tcp'?",
+    )
 
 
 def test_code_that_makes_a_model_is_not_executed(cell: Path) -> None:

@@ -10,7 +10,7 @@ import json
 import os
 import sys
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.limits import SCENE_MEMORY, SCENE_SECONDS
@@ -20,7 +20,7 @@ from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from robbdd_tools.world.errors import SceneError
 
@@ -29,10 +29,11 @@ def _faults(instance: SceneInstance) -> Iterator[SceneFault]:
     from robbdd_tools.world.fixed_faults import fixed_faults
 
     for error in fixed_faults(instance):
-        yield SceneFault(_kind(error), error.reason, error.origin or instance.origin)
+        yield SceneFault(kind_of(error), error.reason, error.origin or instance.origin)
 
 
-def _kind(error: SceneError) -> FaultKind:
+def kind_of(error: SceneError) -> FaultKind:
+    """Return the part of a scene that an error is about."""
     from robbdd_tools.world.frames import PoseError
     from robbdd_tools.world.overlaps import Overlap
 
@@ -41,19 +42,24 @@ def _kind(error: SceneError) -> FaultKind:
     return FaultKind.POSE if isinstance(error, PoseError) else FaultKind.MODEL
 
 
-def main() -> None:
-    """Answer the request on standard input."""
+def answer_instances(answer: Callable[[list[SceneInstance]], list[dict[str, Any]]]) -> None:
+    """Answer the scene instances on standard input, with limited memory and processor time."""
     requests, answers = reserve_channel()
     # An opened folder may contain a model that demands any amount of either.
     limit_memory(SCENE_MEMORY.value())
     limit_processor_time(SCENE_SECONDS.value())
-    # Checking needs no graphics: a broken graphics back end must not prevent loading the engine.
+    # Nothing is rendered: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     with os.fdopen(requests, encoding="utf-8") as stream:
         instances = [from_plain(SceneInstance, one) for one in json.load(stream)]
-    found = [asdict(fault) for instance in instances for fault in _faults(instance)]
+    found = answer(instances)
     with os.fdopen(answers, "w", encoding="utf-8") as stream:
         json.dump(found, stream)
+
+
+def main() -> None:
+    """Answer the request on standard input."""
+    answer_instances(lambda instances: [asdict(fault) for instance in instances for fault in _faults(instance)])
 
 
 if __name__ == "__main__":

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
+from robbdd_tools.checks.model_name import part_names
 from robbdd_tools.features.catalog_source import describe_catalog_entry, entry_at, entry_definition
 from robbdd_tools.features.model_parts_help import (
     describe_file,
@@ -17,11 +19,19 @@ from robbdd_tools.features.model_parts_help import (
     part_definition,
 )
 from robbdd_tools.features.python_code import code_at, code_definition, describe_code
+from robbdd_tools.names.index import language_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.outside_place import OutsidePlace
+    from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
+
+
+_NAMING = ("bddx", "scenex", "ktree", "bdd")
+"""Languages that can name such things."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,3 +59,42 @@ def outside_name_at(snapshot: Snapshot, uri: str, offset: int) -> OutsideName | 
     if entry is not None:
         return OutsideName(entry[0], partial(describe_catalog_entry, entry[1]), partial(entry_definition, entry[1]))
     return None
+
+
+def outside_references(snapshot: Snapshot, uri: str, offset: int) -> tuple[list[tuple[str, Span]], OutsidePlace | None]:
+    """Return the places in the loaded models that name what another file defines, sorted, and its definition.
+
+    Uses in the other file, such as Python code, are not searched.
+    """
+    named = outside_name_at(snapshot, uri, offset)
+    place = None if named is None else named.definition()
+    if place is None:
+        return [], None
+    found: list[tuple[str, Span]] = []
+    for other in sorted(snapshot.sources):
+        file = snapshot.file(other) if language_of(other) in _NAMING else None
+        for span in _named_in(file) if file is not None else ():
+            checkpoint()
+            one = outside_name_at(snapshot, other, span.start)
+            defined = None if one is None or one.span != span else one.definition()
+            if defined is not None and (defined.uri, defined.span) == (place.uri, place.span):
+                found.append((other, span))
+    return found, place
+
+
+def _named_in(file: FileAnalysis) -> Iterator[Span]:
+    """Yield the spans of a file that may name something that another file defines."""
+    for placed in file.declarations:
+        root = placed.declaration.tree
+        for node in walk(root) if root is not None else ():
+            match node:
+                case tree.PythonAttribute():
+                    yield node.module.span.shifted(placed.offset)
+                    yield node.attribute.span.shifted(placed.offset)
+                case tree.SystemPath() | tree.RosPath():
+                    yield node.path.span.shifted(placed.offset)
+                case tree.CatalogEntry():
+                    yield node.name.span.shifted(placed.offset)
+                case _:
+                    pass
+        yield from (named.text.span.shifted(placed.offset) for named in part_names(placed.declaration))

@@ -22,6 +22,7 @@ from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.pull_diagnostics import can_pull, register_pull
 from robbdd_tools.lsp.run_history import register_run_history
+from robbdd_tools.lsp.scene_preview import register_scene
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
@@ -51,6 +52,7 @@ def create_server() -> RobbddServer:
     register_definitions(server)
     register_preview(server)
     register_graph(server)
+    register_scene(server)
     register_stored_runs(server)
     register_run_history(server)
     register_projects(server)

@@ -29,16 +29,22 @@ class LastValid:
         If the text has no error, the answer is the result of ``make``, and the error is ``None``. Otherwise the answer
         is the last one that was made from a text without errors, or ``None``.
         """
-        error = _first_error(snapshot, uri)
+        problem = first_problem(snapshot, uri)
         kept = self._kept.setdefault(uri, {})
-        if error is None:
+        if problem is None:
             kept[key] = make()
             return kept[key], None
-        return kept.get(key), _described(snapshot, uri, error)
+        return kept.get(key), problem
 
     def forget(self, uri: str) -> None:
         """Drop the answers of a document."""
         self._kept.pop(uri, None)
+
+
+def first_problem(snapshot: Snapshot, uri: str) -> str | None:
+    """Return the first error of a document or of a file that it imports, with its place; ``None`` without one."""
+    error = _first_error(snapshot, uri)
+    return None if error is None else _described(snapshot, uri, error)
 
 
 def _first_error(snapshot: Snapshot, uri: str) -> Diagnostic | None:

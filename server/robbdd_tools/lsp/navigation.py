@@ -7,6 +7,7 @@ from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import Item, outline
+from robbdd_tools.features.outside_names import outside_references
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
 from robbdd_tools.features.workspace_symbols import workspace_symbols
@@ -28,7 +29,8 @@ def _register_uses(server: RobbddServer) -> None:
             document = document_of(snapshot, params.text_document.uri)
             offset = ls.convert.offset(document, params.position)
             found = references(snapshot, document.uri, offset, params.context.include_declaration)
-            return [ls.convert.location(snapshot, uri, span) for uri, span in found]
+            places = [ls.convert.location(snapshot, uri, span) for uri, span in found]
+            return places or _outside(ls, snapshot, document.uri, offset, params.context.include_declaration)
 
         return await ls.importers.analyse(params.text_document.uri, params.position, find)
 
@@ -67,6 +69,17 @@ def _register_uses(server: RobbddServer) -> None:
             return await ls.importers.analyse(params.text_document.uri, params.position, find)
         except RenameRefused as refused:
             raise JsonRpcInvalidParams(str(refused)) from refused
+
+
+def _outside(
+    ls: RobbddServer, snapshot: Snapshot, uri: str, offset: int, with_declaration: bool
+) -> list[types.Location]:
+    """Return the uses of Python code, or of a part of a model file."""
+    found, place = outside_references(snapshot, uri, offset)
+    places = [ls.convert.location(snapshot, other, span) for other, span in found]
+    if place is not None and with_declaration:
+        places.append(types.Location(uri=place.uri, range=ls.convert.range(place.document, place.span)))
+    return places
 
 
 def _register_structure(server: RobbddServer) -> None:

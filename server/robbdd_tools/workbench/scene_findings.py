@@ -42,21 +42,13 @@ class SceneChecker:
 
         A file with errors is not examined.
         """
-        from robbdd_tools.graph.places import placed_instances
-        from robbdd_tools.graph.write.build import build_graph
-
-        file = snapshot.file(uri)
-        declared = [] if file is None else [placed.declaration.tree for placed in file.declarations]
-        if not any(isinstance(one, tree.SceneInstance) for one in declared):
+        if not declares_instance(snapshot, uri):
             return []
         rules = [one for other in snapshot.closure(uri) for one in fast_diagnostics(snapshot, other.document.uri)]
         if any(one.severity is Severity.ERROR for one in rules):
             return []
-        built = build_graph(snapshot, uri)
-        every = placed_instances(built, snapshot)
-        own = [one for one in every if one.origin is not None and path_to_uri(Path(one.origin.file)) == uri]
-        request = json.dumps([asdict(_with_short_names(one)) for one in own])
-        found = self._faults(uri, request, own)
+        own = instances_of(snapshot, uri)
+        found = self._faults(uri, request_for(own), own)
         if isinstance(found, str):
             message = f"the models and poses of this scene were not checked: {found}"
             return [Diagnostic(uri, Span(0, 0), Severity.WARNING, "scene-unchecked", message)]
@@ -65,11 +57,32 @@ class SceneChecker:
         return [_diagnostic(snapshot, uri, one) for one in unknown]
 
     def _faults(self, uri: str, request: str, instances: list[SceneInstance]) -> tuple[SceneFault, ...] | str:
-        state = request + repr(list(_file_states(instances)))
+        state = request + repr(list(file_states(instances)))
         known = self._known.get(uri)
         if known is None or known[0] != state:
             known = self._known[uri] = (state, _examined(request))
         return known[1]
+
+
+def declares_instance(snapshot: Snapshot, uri: str) -> bool:
+    """Return whether a file declares an executable scene."""
+    file = snapshot.file(uri)
+    declared = [] if file is None else [placed.declaration.tree for placed in file.declarations]
+    return any(isinstance(one, tree.SceneInstance) for one in declared)
+
+
+def instances_of(snapshot: Snapshot, uri: str) -> list[SceneInstance]:
+    """Return the scene instances that a file without errors declares."""
+    from robbdd_tools.graph.places import placed_instances
+    from robbdd_tools.graph.write.build import build_graph
+
+    every = placed_instances(build_graph(snapshot, uri), snapshot)
+    return [one for one in every if one.origin is not None and path_to_uri(Path(one.origin.file)) == uri]
+
+
+def request_for(instances: list[SceneInstance]) -> str:
+    """Return the request for a process that sets up scene instances."""
+    return json.dumps([asdict(_with_short_names(one)) for one in instances])
 
 
 def _with_short_names(instance: SceneInstance) -> SceneInstance:
@@ -82,7 +95,7 @@ def _with_short_names(instance: SceneInstance) -> SceneInstance:
     return replace(instance, elements=tuple(elements), frictions=())
 
 
-def _file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:
+def file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:
     """Yield the path, size and time of the last change of each file that the models name."""
     for instance in instances:
         models = [*instance.models, *(model for one in instance.elements for model in one.models)]
@@ -98,16 +111,22 @@ def _files(model: ModelSource) -> Iterator[Path]:
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:
     """Return the faults of the instances in a request; a text if they could not be examined."""
+    answer = answer_of(FIND, request)
+    return answer if isinstance(answer, str) else tuple(from_plain(SceneFault, one) for one in answer)
+
+
+def answer_of(module: str, request: str) -> list[object] | str:
+    """Return the answer of a process that sets up scene instances; a text if it failed or took too long."""
     seconds = SCENE_SECONDS.value()
     try:
-        ending = run_for(seconds, FIND, sent=request)
+        ending = run_for(seconds, module, sent=request)
     except OSError as error:
         return str(error)
     if ending.code is None:
         return f"it took longer than {seconds} seconds (the limit {SCENE_SECONDS.name})"
     if ending.code:
         return (ending.errors.strip().splitlines() or [f"the process ended with {describe_exit(ending.code)}"])[-1]
-    return tuple(from_plain(SceneFault, one) for one in json.loads(ending.output))
+    return json.loads(ending.output)
 
 
 def _diagnostic(snapshot: Snapshot, uri: str, fault: SceneFault) -> Diagnostic:

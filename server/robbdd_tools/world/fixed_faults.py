@@ -29,7 +29,7 @@ SEEDS = (1, 2)
 
 
 @dataclass(slots=True)
-class _Placed:
+class Placed:
     """The elements of a scene instance with a model and a given pose."""
 
     objects: dict[str, ObjectModel] = field(default_factory=dict[str, "ObjectModel"])
@@ -39,25 +39,25 @@ class _Placed:
 
 def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
     """Yield the faults of the models of a scene instance, of its poses, and the overlaps between given poses."""
-    instance = _without_code(instance)
+    instance = without_code(instance)
     try:
         staging, other = (Staging(instance, seed) for seed in SEEDS)
     except SceneError as error:
         yield error
         return
-    placed = _Placed()
+    placed = Placed()
     for one in instance.elements:
         try:
-            _place(one, staging, other, placed)
+            place(one, staging, placed, other)
         except SceneError as error:
             yield error
     try:
-        _refuse_overlaps(staging, placed)
+        refuse_overlaps(simulated(staging, placed))
     except SceneError as error:
         yield error
 
 
-def _without_code(instance: SceneInstance) -> SceneInstance:
+def without_code(instance: SceneInstance) -> SceneInstance:
     """Return the instance without the models that users' code creates or that other findings are about."""
     elements = (one for one in instance.elements if _is_known(usable_model(one.models, one.element)))
     models = tuple(model for model in instance.models if model.kind != "python")
@@ -79,22 +79,25 @@ def _is_known(model: ModelSource | None) -> bool:
     return model.kind != "catalog" or model.name in (catalog.objects.keys() | catalog.robots.keys())
 
 
-def _place(one: Realisation, staging: Staging, other: Staging, placed: _Placed) -> None:
-    """Add an element to the placed ones if its pose is given. Raises ``SceneError``."""
+def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | None = None) -> None:
+    """Add an element to the placed ones if it has a model and a pose. Raises ``SceneError``.
+
+    If ``other`` is the same instance with another seed, an element with a sampled pose is left out.
+    """
     name = one.element
     if one.is_agent:
         robot, base = staging.robot(name), staging.base(name)
-        if robot is not None and base is not None and base == other.base(name):
+        if robot is not None and base is not None and (other is None or base == other.base(name)):
             placed.agents[name], placed.poses[name] = robot, base
         return
     model, pose = staging.object_model(name, carries=False), staging.pose(name)
-    if model is not None and pose is not None and pose == other.pose(name):
+    if model is not None and pose is not None and (other is None or pose == other.pose(name)):
         placed.objects[name], placed.poses[name] = centred(model), pose
 
 
-def _refuse_overlaps(staging: Staging, placed: _Placed) -> None:
-    """Raise ``Overlap`` if elements at their given poses overlap, and ``SceneError`` if they do not compile."""
+def simulated(staging: Staging, placed: Placed) -> Simulation:
+    """Return a world of the placed elements that has not been stepped. Raises ``SceneError`` if it does not compile."""
     cast = Cast(placed.objects, placed.agents, {}, {}, None, staging=staging)
     poses = {name: pose for name in placed.objects if (pose := cast.pose(name)) is not None}
     bases = {name: placed.poses[name] for name in placed.agents}
-    refuse_overlaps(Simulation(World(compile_world(cast, bases, poses), cast, bases, poses, SEEDS[0], 0)))
+    return Simulation(World(compile_world(cast, bases, poses), cast, bases, poses, SEEDS[0], 0))

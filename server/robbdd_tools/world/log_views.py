@@ -34,9 +34,8 @@ def views(simulation: Simulation, trace: Trace, *, last: bool = False) -> Iterat
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     model = simulation.model
-    bodies = [body for body in range(model.nbody) if next(shown_geoms(model, body), None) is not None]
-    names = {body: str(model.body(body).name) or WORLD for body in bodies}
-    names = {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
+    names = drawn_bodies(model)
+    bodies = list(names)
     yield 0.0, "/geometry", geometry(model, names, simulation.world.cast.regions)
     solids = {body: shapes for body in bodies if (shapes := _shapes(model, body))}
     yield 0.0, "/scene", {"deletions": [], "entities": [_entity(names[body], solids[body]) for body in solids]}
@@ -53,6 +52,13 @@ def views(simulation: Simulation, trace: Trace, *, last: bool = False) -> Iterat
         yield time, "/tf", {"transforms": _frames(time, [names[body] for body in shown], places, turns)}
         if simulation.robots:
             yield time, "/joints", _joints(simulation, states[row])
+
+
+def drawn_bodies(model: Any) -> dict[int, str]:
+    """Return the names of the bodies that have something to draw, by their number in the engine's model."""
+    bodies = [body for body in range(model.nbody) if next(shown_geoms(model, body), None) is not None]
+    names = {body: str(model.body(body).name) or WORLD for body in bodies}
+    return {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
 
 
 def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]:

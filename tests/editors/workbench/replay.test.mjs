@@ -8,6 +8,7 @@ import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "tworobots/heights.bdd";
+const CELL = "ownrobot/cell.scenex";
 /** The ball hangs below the suction cup, lower than the rim of the tallest bin. */
 const FAILS = 'part = ball and robot = ur10 and scale = "1.1"';
 
@@ -114,6 +115,54 @@ describe("with three dimensions", () => {
   step("the panel comes back with the window", async () => {
     await workbench.reload();
     await page.locator(".label", { hasText: "ball" }).waitFor();
+  });
+
+  step("the scene of a .scenex is drawn next to its text", async () => {
+    await workbench.command("View: Close All Editors");
+    await workbench.openFile(CELL);
+    await workbench.command("RobBDD: Show Scene");
+    page = workbench.webview("Scene cell.scenex");
+    await page.locator(".stage canvas").waitFor();
+    for (const name of ["five", "table", "bin", "cube0"]) {
+      await page.locator(".label", { hasText: name }).waitFor();
+    }
+    await page.getByText("At a sampled pose: cube0, cube1.").waitFor();
+    await eventually(async () => assert.ok(await painted(), "the scene has not been drawn"));
+    await workbench.screenshot("scene");
+  });
+
+  step("it follows an edit of a pose, and keeps the last scene while the text has an error", async () => {
+    // The remark on an error makes the scene lower, so only the column counts.
+    const left = () => page.locator(".label", { hasText: "bin" }).evaluate(({ style }) => Number.parseFloat(style.left));
+    const before = await left();
+    const { line, column } = await session.placeOf(CELL, "-100, 500, 0");
+    await workbench.command("View: Focus First Editor Group");
+    await workbench.goTo(line, column + "-100, ".length);
+    await workbench.page.keyboard.press("Delete");
+    await workbench.type("2");
+    await eventually(async () => assert.ok((await left()) < before - 30));
+    await workbench.type("(");
+    await page.locator(".problem", { hasText: "Out of date: line" }).waitFor();
+    assert.ok((await left()) < before - 30);
+    await workbench.page.keyboard.press("Backspace");
+    await page.locator("[role=status]:not(:empty)").waitFor({ state: "detached" });
+  });
+
+  step("an overlap is listed and leads to its text", async () => {
+    const { line, column } = await session.placeOf(CELL, "-100, 500, 0");
+    await workbench.goTo(line, column);
+    for (const _ of "-100, 200") {
+      await workbench.page.keyboard.press("Delete");
+    }
+    await workbench.type("-480, 0");
+    const fault = page.getByRole("button", { name: /overlap by \d+ mm/ });
+    await fault.waitFor();
+    for (const scheme of Object.keys(SCHEMES)) {
+      await workbench.changeScheme(scheme);
+      await workbench.screenshot(`scene-overlap-${scheme}`);
+    }
+    await fault.click();
+    await workbench.cursorAt((await session.placeOf(CELL, "model bin_model")).line);
   });
 });
 
