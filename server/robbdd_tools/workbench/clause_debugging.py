@@ -171,6 +171,7 @@ def scene_document(run: Run, written: Mapping[str, Any]) -> dict[str, Any]:
     """
     (spec,), parts = run.manifest.scenarios, written["parts"]
     entries = run.progress.scenario_json(0)["clauses"]
+    judged = run.progress.scenarios[0].judged
     return {
         "run": run.number,
         "folder": path_to_uri(run.folder.absolute()),
@@ -179,6 +180,7 @@ def scene_document(run: Run, written: Mapping[str, Any]) -> dict[str, Any]:
         "clauses": [
             {
                 **entry,
+                "reason": entry["reason"] if clause.line in judged else "not judged yet",
                 "sentence": plain_sentence(clause.sentence),
                 "source": None,
                 "stale": False,
