@@ -3,6 +3,7 @@ import { test } from "node:test";
 import type { CodeLens, InlayHint, TextDocument } from "vscode";
 import { appearanceOf, marksOfHints, marksOfLenses } from "../src/verdicts/marks";
 
+const FRESH = { stale: false, rejudged: false, consequence: false };
 const LINES = ["Scenario tidy {", "    at-goal: holds(<thing>)", "    | <cube> | <bin> |"];
 
 test("a hint without a verdict has no mark", () => {
@@ -13,17 +14,18 @@ test("a hint without a verdict has no mark", () => {
 });
 
 test("a verdict of a later server is unknown, and fresh unless it says that it is stale", () => {
-  assert.deepEqual(appearanceOf({ data: { verdict: "holds" } }), { verdict: "holds", stale: false, rejudged: false });
-  assert.deepEqual(appearanceOf({ data: { verdict: "perhaps", stale: true } }), { verdict: "unknown", stale: true, rejudged: false });
+  assert.deepEqual(appearanceOf({ data: { verdict: "holds" } }), { verdict: "holds", ...FRESH });
+  assert.deepEqual(appearanceOf({ data: { verdict: "perhaps", stale: true } }), { verdict: "unknown", ...FRESH, stale: true });
 });
 
-test("*holds* is drawn after its clause, other verdicts before it, but after the row of a table or what is re-judged", () => {
+test("*holds* is drawn after its clause, other verdicts before it, but after the row of a table, what is re-judged and a consequence", () => {
   const found = marksOfHints(text(), [
     hint(1, 27, "✔ 4/4", { verdict: "holds", stale: false }, "thing = cube: ✔"),
     hint(1, 27, "✗ 0/4 (stale)", { verdict: "violated", stale: true }),
     hint(1, 27, "? 0/4", { verdict: "unknown", stale: false }),
     hint(2, 22, "✗ at-goal", { verdict: "violated", stale: false }),
     hint(1, 27, "✗ 0 of 4 hold", { verdict: "violated", stale: false, rejudged: true }),
+    hint(1, 27, "? unknown because of carry", { verdict: "unknown", stale: false, consequence: true }),
     hint(0, 13, "4 scenarios", undefined),
   ]);
   assert.deepEqual(
@@ -34,13 +36,14 @@ test("*holds* is drawn after its clause, other verdicts before it, but after the
       ["? 0/4", 1, 4, "before"],
       ["✗ at-goal", 2, 22, "after"],
       ["✗ 0 of 4 hold", 1, 27, "after"],
+      ["? unknown because of carry", 1, 27, "after"],
     ],
   );
-  assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", ""]);
+  assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", "", ""]);
 });
 
 test("a pass rate is drawn at the end of the line below its lens", () => {
-  const rate = { verdict: "violated", stale: false, rejudged: false };
+  const rate = { verdict: "violated", ...FRESH };
   const lenses = [lens("Run", undefined), lens("✗ 3/4 passed", rate)];
   assert.deepEqual(marksOfLenses(text(), lenses), [
     { ...rate, words: "✗ 3/4 passed", line: 0, character: 15, side: "after", tooltip: "" },

@@ -9,7 +9,7 @@ import pytest
 from gherkin_kit import edited
 from kit import MODEL, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.features.clause_results import clause_diagnostics, clause_hints, pass_rate, row_hints
+from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate, row_hints
 from robbdd_tools.features.run_verdicts import (
     Findings,
     JudgedScenario,
@@ -170,25 +170,58 @@ def test_clauses_of_every_kind_have_results() -> None:
         assert hint.label == "✔ +31 mm"
 
 
-def test_clauses_that_are_unknown_for_the_same_reason_are_one_problem() -> None:
+def test_clauses_that_are_unknown_because_of_another_one_have_no_problem_of_their_own() -> None:
     case = fixture(MODEL)
-    digests, when = digests_of(case.snapshot, case.uri), f"{NS}when-bhv-fetch.when"
+    digests, when, bench = digests_of(case.snapshot, case.uri), f"{NS}when-bhv-fetch.when", f"{NS}on-bench"
+    lost, late = replace(UNKNOWN, failure="panda lost it (unknown)"), replace(UNKNOWN, failure="timed out (unknown)")
 
-    def problems(*failures: tuple[str, str]) -> list[tuple[str, str, int]]:
-        scenario = JudgedScenario(case.uri, f"{NS}bench-to-tray", 1, "part = 1", "", "")
-        for iri, failure in failures:
-            scenario.judge(iri, replace(UNKNOWN, failure=failure, digest=digests.clauses[iri]))
-        found = clause_diagnostics(case.snapshot, case.uri, Results([scenario]).findings())
-        return [(MODEL[one.span.start :].split()[0], one.message, len(one.related)) for one in found]
+    def following(cause: str, words: str) -> Judgement:
+        return replace(lost, because=cause, because_words=words)
 
-    lost, late = "panda lost it (unknown)", "timed out (unknown)"
-    assert problems((IRI, lost), (when, lost), (f"{NS}on-bench", late)) == [
-        ("on-bench:", f"{late} [part = 1]", 0),
-        ("Behaviour", f"{lost}, and so 1 more clause [part = 1]", 1),
+    def problems(*verdicts: tuple[int, str, Judgement], text: str = MODEL) -> list[tuple[str, str, list[str]]]:
+        scenarios = [JudgedScenario(case.uri, f"{NS}bench-to-tray", n, f"part = {n}", "", "") for n in (1, 2)]
+        for number, iri, verdict in verdicts:
+            scenarios[number - 1].judge(iri, replace(verdict, digest=digests.clauses[iri]))
+        case.project.open(case.uri, 2, text)
+        found = clause_diagnostics(case.snapshot, case.uri, Results(scenarios).findings())
+        return [
+            (text[one.span.start :].split()[0], one.message.split("\n")[0], [other.message for other in one.related])
+            for one in found
+        ]
+
+    words = "unknown because of carry"
+    assert problems((1, IRI, following(when, words)), (1, when, lost), (1, bench, late)) == [
+        ("on-bench:", "timed out (unknown) [part = 1]", []),
+        ("Behaviour", "panda lost it (unknown), and so 1 more clause [part = 1]", [words]),
     ]
-    assert len(problems((IRI, lost), (when, late))) == 2
-    ((place, message, _),) = problems((f"{NS}on-bench", lost), (when, lost), (IRI, lost))
-    assert (place, message) == ("Behaviour", f"{lost}, and so 2 more clauses [part = 1]")
+    # Equal texts alone fold nothing.
+    assert len(problems((1, IRI, lost), (1, when, lost))) == 2
+    # A clause with a reason of its own in another execution has that one first.
+    assert problems((1, IRI, following(when, words)), (1, when, lost), (2, IRI, late)) == [
+        ("Behaviour", "panda lost it (unknown) [part = 1]", []),
+        ("in-tray:", "timed out (unknown) · 0 of 2 hold", []),
+    ]
+    # If the cause was edited since, the clause must not be left without a problem.
+    stale = MODEL.replace("on-bench: holds", "on-bench: not holds")
+    assert stale != MODEL
+    ((place, message, _),) = problems(
+        (1, bench, lost), (1, IRI, following(bench, "unknown because of on-bench")), text=stale
+    )
+    assert (place, message) == ("in-tray:", "panda lost it (unknown) [part = 1]")
+
+
+def test_the_hint_of_a_consequence_names_its_cause() -> None:
+    case = fixture(MODEL)
+    following = replace(UNKNOWN, because=f"{NS}when-bhv-fetch.when", because_words="unknown because of carry")
+
+    def shown(*verdicts: Judgement) -> tuple[str, bool]:
+        (hint,) = clause_hints(case.snapshot, case.uri, judged(case, *verdicts))
+        return hint.label, "consequence" in appearance(hint)
+
+    assert shown(following) == ("? unknown because of carry", True)
+    assert shown(HOLDS, following) == ("? 1/2  unknown because of carry", True)
+    assert shown(UNKNOWN, following) == ("? 0/2", False)
+    assert shown(VIOLATED, following)[1] is False
 
 
 def test_the_failure_of_a_behaviour_is_shown_at_its_first_words() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from robbdd_tools.protocol.messages import ClauseJudged, ScenarioFinished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
-from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
+from robbdd_tools.run.imported import BrokenResults, ImportedCause, ImportedScenario, read_results
 from robbdd_tools.run.junit import junit
 from robbdd_tools.run.results import RunResults
 
@@ -49,6 +49,14 @@ def test_json_and_junit_give_the_same_but_for_consequences_which_junit_folds() -
     assert [clause.said for clause in from_junit[1].clauses] == [
         "? unknown: the clause was never judged",
         *["? unknown for the same reason as c5"] * 2,
+    ]
+    assert [clause.because for clause in from_json[1].clauses] == [
+        None,
+        *[ImportedCause("https://x/c5", 0, "unknown for the same reason as c5")] * 2,
+    ]
+    assert [clause.because for clause in from_junit[1].clauses] == [
+        None,
+        *[ImportedCause(None, None, "unknown for the same reason as c5")] * 2,
     ]
     assert [clause.said for clause in from_json[0].clauses] == [
         "✔ +16 mm",

@@ -46,6 +46,16 @@ export interface ClauseStarted extends ClauseWords {
   readonly sentence?: string;
 }
 
+/** The cause of an unknown clause: another clause. */
+export interface Because {
+  /** Its IRI, if known. */
+  readonly clause: string | null;
+  /** Its number in its scenario, from 0, if known. */
+  readonly position: number | null;
+  /** Text that takes the place of the reason. */
+  readonly words: string;
+}
+
 export interface ClauseJudged extends ClauseWords {
   readonly type: "ClauseJudged";
   readonly index: number;
@@ -61,6 +71,8 @@ export interface ClauseJudged extends ClauseWords {
   readonly reason: string;
   /** Why the clause is violated or unknown, the reason first; empty if it holds. */
   readonly failure: string;
+  /** The clause of the same scenario that is the cause of this unknown one, if it has no reason of its own. */
+  readonly because?: Because | null;
   /** Why the clause could not have been violated; empty if it could. */
   readonly vacuous?: string;
   /** The id of the error in users' code that makes it unknown; empty if there is none. */

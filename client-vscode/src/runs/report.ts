@@ -1,6 +1,5 @@
 // One run as text: messages in, lines for the output channel and a summary out.
 import { signed } from "../quantity";
-import { Causes } from "./causes";
 import type { ClauseJudged, RunMessage, UserCodeFailed } from "./messages";
 
 export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
@@ -21,7 +20,6 @@ export class RunReport {
   private total = 0;
   private ended = false;
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
-  private readonly causes = new Map<number, Causes>();
   /** Parallel scenarios are reported one after the other, each when it has ended. */
   private readonly reported = new Map<number, string[]>();
   /** The reported errors in users' code, with their numbers. */
@@ -49,7 +47,6 @@ export class RunReport {
         return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
       case "ScenarioStarted":
         this.verdicts.set(message.index, []);
-        this.causes.set(message.index, new Causes());
         this.reported.set(message.index, [
           `  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd(),
         ]);
@@ -119,9 +116,8 @@ export class RunReport {
 
   private describe(clause: ClauseJudged): string {
     const error = this.faults.get(clause.fault ?? "");
-    const cause = this.causes.get(clause.index)?.add(clause.name ?? clause.sentence, clause);
-    return error === undefined && cause !== undefined
-      ? `${SIGNS[clause.verdict]} ${clause.sentence}: ${cause}`
+    return error === undefined && clause.because
+      ? `${SIGNS[clause.verdict]} ${clause.sentence}: ${clause.because.words}`
       : describeClause(clause, error);
   }
 

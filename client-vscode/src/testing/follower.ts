@@ -1,7 +1,6 @@
 // Show the messages of a run at the items of the test tree.
 import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } from "../runs/messages";
 import { RunReport } from "../runs/report";
-import { Causes } from "../runs/causes";
 import type { Item } from "./items";
 import type { ListedTest, Place } from "./listing";
 import { type Failure, type Outcome, folded, outcomeOf } from "./outcomes";
@@ -21,7 +20,6 @@ export interface Sink<I> {
 interface Begun<I> {
   readonly item: I;
   readonly values: string;
-  readonly causes: Causes;
   /** When the judgement of the current clause began, ms. */
   since: number;
 }
@@ -97,7 +95,7 @@ export class RunFollower<I extends Item<I>> {
     const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
-      this.scenarios.set(message.index, { item, values: message.values, causes: new Causes(), since: instant });
+      this.scenarios.set(message.index, { item, values: message.values, since: instant });
     }
   }
 
@@ -119,8 +117,8 @@ export class RunFollower<I extends Item<I>> {
     if (scenario === undefined || item === undefined || message.cancelled === true) {
       return;
     }
-    const cause = scenario.causes.add(message.name ?? message.sentence, message);
-    const outcome = this.worst.add(item, folded(outcomeOf(message, scenario.values), cause), message.robustness);
+    const judged = folded(outcomeOf(message, scenario.values), message.because);
+    const outcome = this.worst.add(item, judged, message.robustness);
     this.tree.note(item, outcome.note);
     showOutcome(this.sink, item, outcome, message.source ?? null, instant - scenario.since);
     scenario.since = instant;

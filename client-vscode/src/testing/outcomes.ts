@@ -1,4 +1,5 @@
 // Convert a clause's verdict to the editor's test states.
+import type { Because } from "../runs/messages";
 import { marginOf, seconds } from "../runs/report";
 
 /** A verdict, from a run's message or from a stored result. */
@@ -47,9 +48,9 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
   }
 }
 
-/** The outcome of a clause that is a consequence of another one, which `words` name; without words, `outcome` itself. */
-export function folded(outcome: Outcome, words: string | undefined): Outcome {
-  return words === undefined ? outcome : { state: "errored", note: words, failure: { text: words, folded: true } };
+/** The outcome of a clause that is unknown because of another one; if there is no such cause, `outcome` itself. */
+export function folded(outcome: Outcome, because: Because | null | undefined): Outcome {
+  return because ? { state: "errored", note: because.words, failure: { text: because.words, folded: true } } : outcome;
 }
 
 /** `values` distinguish the scenario from others shown at the same clause. */

@@ -1,6 +1,6 @@
 // Show results of earlier or external runs as a finished run.
 import { isRecord } from "../values";
-import { Causes } from "../runs/causes";
+import type { Because } from "../runs/messages";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
@@ -19,6 +19,8 @@ export interface FoundClause {
   readonly said: string;
   /** Why the clause is violated or unknown, the reason first. */
   readonly failure: string;
+  /** The clause of the same execution that is the cause, if the clause has no reason of its own. */
+  readonly because?: Because | null;
   readonly stale: boolean;
 }
 
@@ -74,13 +76,11 @@ export async function showResults<I extends Item<I>>(
     }
     const scenario = tree.scenario(variant, found.variation, found.values);
     const whole = found.seconds === null ? undefined : found.seconds * 1000;
-    const causes = new Causes();
     for (const clause of found.clauses) {
-      const cause = causes.add(nameOf(clause), clause);
       for (const item of itemsOf(tree, scenario, clause)) {
         // Only whole executions are timed: each clause gets an equal share, so that the sum is right.
         const share = whole === undefined ? undefined : whole / found.clauses.length;
-        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), cause));
+        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), clause.because));
         tree.note(item, outcome.note);
         showOutcome(sink, item, outcome, tree.about(item)?.place ?? null, share);
         if (found.stale || clause.stale) {
@@ -90,11 +90,6 @@ export async function showResults<I extends Item<I>>(
     }
   }
   return { outdated, left };
-}
-
-/** The local name of a clause, or its sentence. */
-function nameOf({ clause, sentence }: FoundClause): string {
-  return clause === null ? sentence : (/[^/#]*$/.exec(clause)?.[0] ?? clause);
 }
 
 /** The variant of an execution with its scenarios, undefined if the workspace no longer has it. */

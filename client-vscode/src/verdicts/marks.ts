@@ -9,6 +9,8 @@ export interface Appearance {
   readonly stale: boolean;
   /** Stored traces were judged by the edited clause; no execution has shown the verdict. */
   readonly rejudged: boolean;
+  /** The clause is unknown only because of another one, which has the reason. */
+  readonly consequence: boolean;
 }
 
 /** Text before or after a place of a document, with its tooltip. */
@@ -29,7 +31,7 @@ export function appearanceOf(shown: object): Appearance | undefined {
     return undefined;
   }
   const verdict = data["verdict"] === "holds" || data["verdict"] === "violated" ? data["verdict"] : "unknown";
-  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true };
+  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true, consequence: data["consequence"] === true };
 }
 
 /**
@@ -48,8 +50,8 @@ export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[])
     const tooltip = typeof hint.tooltip === "string" ? hint.tooltip : (hint.tooltip?.value ?? "");
     const mark = { ...appearance, words, line, tooltip };
     const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
-    // The editor draws nothing at the row of a table.
-    return appearance.verdict === "holds" || appearance.rejudged || text[first] === "|"
+    // The editor draws nothing at the row of a table, nor at a consequence, whose test has no message.
+    return appearance.verdict === "holds" || appearance.rejudged || appearance.consequence || text[first] === "|"
       ? [{ ...mark, character, side: "after" }]
       : [{ ...mark, character: first, side: "before" }];
   });

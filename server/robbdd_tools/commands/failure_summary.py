@@ -45,7 +45,7 @@ def _causes(scenario: ScenarioResult) -> Iterator[tuple[ClauseSpec, ClauseJudged
     clauses = [(one, scenario.judged[one.line]) for one in scenario.spec.clauses if one.line in scenario.judged]
     named = [(clause.name, judged) for clause, judged in clauses]
     for (clause, judged), because in zip(clauses, consequences(named), strict=True):
-        if judged.verdict != Outcome.HOLDS and not because:
+        if judged.verdict != Outcome.HOLDS and because is None:
             yield clause, judged
 
 

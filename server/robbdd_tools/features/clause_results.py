@@ -42,6 +42,7 @@ class ResultHint:
     - ``substitutions``: the catalog behaviours that were executed instead of the model's, and the chosen
       scene instances.
     - ``rejudged``: the result of stored traces on the edited clause; no execution has shown it.
+    - ``iri``: the IRI of the clause; empty for a table row.
     """
 
     span: Span
@@ -55,6 +56,12 @@ class ResultHint:
     vacuous: str = ""
     substitutions: tuple[str, ...] = ()
     rejudged: RejudgedResult | None = None
+    iri: str = ""
+
+    @property
+    def is_consequence(self) -> bool:
+        """Whether the clause is unknown in some executions, and each time only because of another clause."""
+        return bool(self.failing) and all(judgement.because for _, judgement in self.failing)
 
     @property
     def tooltip(self) -> str:
@@ -82,8 +89,11 @@ class PassRate:
 
 def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
     """Return the data by which clients colour a result."""
-    found = {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
-    return {**found, "rejudged": True} if isinstance(shown, ResultHint) and shown.rejudged is not None else found
+    found: dict[str, Any] = {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
+    if isinstance(shown, ResultHint):
+        found |= {"rejudged": True} if shown.rejudged is not None else {}
+        found |= {"consequence": True} if shown.is_consequence else {}
+    return found
 
 
 def verdict_of(outcome: str) -> str:
@@ -152,8 +162,8 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
     """Return a diagnostic for each clause that did not hold in some variation.
 
-    Clauses whose text has changed since the run have none. Clauses that are unknown in the same executions for the same
-    reasons share one, at the behaviour or else at the first of them: it has the number of the others and links to them.
+    Clauses whose text has changed since the run have none. A clause that is unknown only because of others has none
+    either: the diagnostics of those have the number of such clauses and link to them.
 
     A diagnostic begins with the worst reason, then lists the worst variations with their instants, and links to their
     table rows. If it is ``brief``, it names only the worst variation, because a hover below it shows the full list.
@@ -162,6 +172,7 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
     found: list[Diagnostic] = []
     hints = clause_hints(snapshot, uri, findings)
     followers = _followers(hints)
+    folded = {one.iri for several in followers.values() for one in several}
     for hint in hints:
         if hint.rejudged is not None:
             found += _rejudged_diagnostic(uri, hint, hint.rejudged, 0 if brief else MAX_LINES_OF_FAILURES)
@@ -169,19 +180,23 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.head, Severity.HINT, "clause-vacuous", message))
         # An error in users' code is reported at the code, not at every clause that is unknown because of it.
-        failing = [judged for judged in hint.failing if not judged[1].fault]
-        others = followers.get(_causes(hint), [hint])
-        if failing and not hint.stale and hint is others[0]:
+        failing = sorted(_without_faults(hint), key=lambda judged: judged[1].because != "")
+        others = followers.get(hint.iri, [])
+        if failing and not hint.stale and hint.iri not in folded:
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
                 for scenario, judgement in failing[:MAX_LINES_OF_FAILURES]
                 if (scenario.variant, scenario.row) in rows
             )
-            message = _failure_message(hint, failing, 1 if brief else MAX_LINES_OF_FAILURES, len(others) - 1)
-            related += tuple(Related(uri, one.head, "unknown for the same reason") for one in others[1:])
+            message = _failure_message(hint, failing, 1 if brief else MAX_LINES_OF_FAILURES, len(others))
+            related += tuple(Related(uri, one.head, one.failing[0][1].because_words) for one in others)
             found.append(Diagnostic(uri, hint.head, severity, f"clause-{hint.outcome}", message, related))
     return found
+
+
+def _without_faults(hint: ResultHint) -> list[Judged]:
+    return [judged for judged in hint.failing if not judged[1].fault]
 
 
 def _rejudged_diagnostic(uri: str, hint: ResultHint, rejudged: RejudgedResult, most: int) -> Iterator[Diagnostic]:
@@ -196,28 +211,22 @@ def _rejudged_diagnostic(uri: str, hint: ResultHint, rejudged: RejudgedResult, m
     yield Diagnostic(uri, hint.head, Severity.INFORMATION, "clause-rejudged", message)
 
 
-def _causes(hint: ResultHint) -> tuple[tuple[int, str], ...]:
-    """Return the executions in which a clause is unknown, each with the reason; empty if others may differ from it."""
-    if hint.outcome != "unknown" or hint.stale or any(judgement.fault for _, judgement in hint.failing):
-        return ()
-    return tuple((id(scenario), judgement.failure) for scenario, judgement in hint.failing)
-
-
-def _followers(hints: Iterable[ResultHint]) -> dict[tuple[tuple[int, str], ...], list[ResultHint]]:
-    """Return the clauses that are unknown in the same executions for the same reasons: a behaviour, then the others."""
-    found: dict[tuple[tuple[int, str], ...], list[ResultHint]] = {}
-    # Only a behaviour has a head of its own.
-    for hint in sorted(hints, key=lambda hint: (hint.head == hint.span, hint.span.start)):
-        causes = _causes(hint)
-        if causes and all(reason for _, reason in causes):
-            found.setdefault(causes, []).append(hint)
+def _followers(hints: Sequence[ResultHint]) -> dict[str, list[ResultHint]]:
+    """Return for each clause, by IRI, the clauses that are unknown only because of it and of other clauses shown."""
+    shown = {hint.iri for hint in hints if not hint.stale}
+    found: dict[str, list[ResultHint]] = {}
+    for hint in hints:
+        causes = dict.fromkeys(judgement.because for _, judgement in _without_faults(hint))
+        if not hint.stale and causes.keys() <= shown:
+            for cause in causes:
+                found.setdefault(cause, []).append(hint)
     return found
 
 
 def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int, others: int) -> str:
     """Return the text of a clause's failures. The first line has the reason of the worst, since clients may cut there.
 
-    ``most`` is the maximum number of variations in it, ``others`` the number of clauses unknown for the same reasons.
+    ``most`` is the maximum number of variations in it, ``others`` the number of clauses unknown because of this one.
     """
     scenario, worst = failing[0]
     reason = worst.failure or worst.said
@@ -256,13 +265,25 @@ def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) 
         label = f"{sign} {holding}/{len(judged)}" + (f"  worst {worst.margin}" if worst.margin else "")
     if worst.outcome == "undefined":
         label += " no step"
+    if failing and len({judgement.because_words for _, judgement in failing}) == 1 and worst.because_words:
+        label = f"{sign} {worst.because_words}" if len(judged) == 1 else f"{label}  {worst.because_words}"
     if worst.fault:
         label += " error in code"
     vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""
     shown = " ".join((label, *[VACUOUS] * bool(vacuous), *[STALE] * stale))
     lines, substituted = tuple(map(_line, ranked)), substitutions(scenario for scenario, _ in judged)
     return ResultHint(
-        clause.span, clause.head, shown, worst.outcome, lines, stale, failing, ranked[0], vacuous, substituted
+        clause.span,
+        clause.head,
+        shown,
+        worst.outcome,
+        lines,
+        stale,
+        failing,
+        ranked[0],
+        vacuous,
+        substituted,
+        iri=clause.iri,
     )
 
 

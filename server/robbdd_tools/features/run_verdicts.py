@@ -40,6 +40,8 @@ class Judgement:
     - ``line``: the line of the clause's step in the feature.
     - ``vacuous``: why the clause could not have failed in the whole run; empty if it could.
     - ``fault``: the ``id`` of the error in users' code that made the clause unknown.
+    - ``because``: the IRI of the clause of the same execution that is the cause; empty if the clause is no consequence.
+    - ``because_words``: a text that names that clause.
     """
 
     name: str
@@ -53,6 +55,8 @@ class Judgement:
     operand: int | None = None
     fault: str = ""
     failure: str = ""
+    because: str = ""
+    because_words: str = ""
 
 
 @dataclass(slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import Digests
     from robbdd_tools.protocol.messages import ClauseJudged
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+    from robbdd_tools.run.consequences import Consequence
 
 _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
@@ -59,6 +61,13 @@ def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, share
         fault=message.fault or (shared_fault if outcome is Outcome.UNKNOWN else ""),
         failure=failure_words(message, clause),
     )
+
+
+def with_cause(found: Judgement, because: Consequence | None, spec: ScenarioSpec) -> Judgement:
+    """Return a verdict with the clause of its scenario that is the cause, if there is one."""
+    if because is None:
+        return found
+    return replace(found, because=spec.clauses[because.position].iri, because_words=because.words)
 
 
 def refused_judgement(clause: ClauseSpec, reason: str, digests: Digests) -> Judgement:

@@ -6,7 +6,7 @@ import asyncio
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, with_cause
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_progress import RunProgress
@@ -21,6 +21,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.run.consequences import Causes, Consequence
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ class RunFollower:
         self._results = RunResults(run.manifest)
         self._loop = asyncio.get_running_loop()
         self._shared_fault = ""
+        self._causes: dict[int, Causes] = {}
         self._begun: dict[str, set[tuple[int, str, int | None]]] = {}
         run.listen(self._hear)
 
@@ -105,11 +107,12 @@ class RunFollower:
         Such a clause is unknown in the report, but its verdict is not stored.
         """
         self._results.apply(message)
+        because = self._because(message) if isinstance(message, ClauseJudged) else None
         match message:
             case ScenarioStarted(index):
                 self._scenario(index)
             case ClauseJudged() if not left_open:
-                self._judge(message)
+                self._judge(message, because)
             case UserCodeFailed(index, fault):
                 self._fault(index, fault)
             case ScenarioFinished(index):
@@ -117,7 +120,7 @@ class RunFollower:
                 self._report_progress()
             case _:
                 pass
-        params = for_client(self._active.id, self._text, self._results, message, cancelled=left_open)
+        params = for_client(self._active.id, self._text, self._results, message, cancelled=left_open, because=because)
         self._ls.protocol.notify(RUN_MESSAGE, params)
         if isinstance(message, RunStarted):
             for note in self._text.notes:
@@ -148,10 +151,19 @@ class RunFollower:
             scenario.faults = (*scenario.faults, fault)
         self._ls.show_results(self._text.places.uris)
 
-    def _judge(self, message: ClauseJudged) -> None:
+    def _because(self, message: ClauseJudged) -> Consequence | None:
+        clause, spec = (
+            clause_at(self._results, message.index, message.line),
+            self._results.scenarios[message.index].spec,
+        )
+        causes = self._causes.setdefault(message.index, Causes())
+        return None if clause is None else causes.add(spec.clauses.index(clause), clause.name, message)
+
+    def _judge(self, message: ClauseJudged, because: Consequence | None) -> None:
         clause = clause_at(self._results, message.index, message.line)
         if clause is not None:
             found = judgement(clause, message, self._text.digests, self._shared_fault)
+            found = with_cause(found, because, self._results.scenarios[message.index].spec)
             self._scenario(message.index).judge(clause.iri, found)
             self._ls.show_results(self._text.places.uris)
 

@@ -17,22 +17,30 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
-from robbdd_tools.protocol.specs import ClauseSpec
+from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 from robbdd_tools.run.report import failure_words, plain_sentence, values_words
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.run_request import RunText
+    from robbdd_tools.run.consequences import Consequence
     from robbdd_tools.run.results import RunResults
 
 RUN_MESSAGE = "robbdd/runMessage"
 
 
 def for_client(
-    run: str, text: RunText, results: RunResults, message: RunMessage, *, cancelled: bool = False
+    run: str,
+    text: RunText,
+    results: RunResults,
+    message: RunMessage,
+    *,
+    cancelled: bool = False,
+    because: Consequence | None = None,
 ) -> dict[str, Any]:
     """Return the parameters of the notification about a message of the run named ``run``.
 
-    ``cancelled`` is true for a clause that a cancelled run left open.
+    ``cancelled`` is true for a clause that a cancelled run left open. ``because`` is the cause of a clause that is
+    unknown only because of another one.
     """
     fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
     match message:
@@ -62,6 +70,7 @@ def for_client(
             if isinstance(message, ClauseJudged):
                 fields["cancelled"] = cancelled
                 fields["failure"] = failure_words(message, clause)
+                fields["because"] = because and cause_for_client(because, results.scenarios[index].spec)
         case UserCodeFailed(_, fault):
             fields["id"], fields["lines"] = fault.id, [f"{fault.code} failed", *fault.traceback()]
         case ScenarioFinished(index):
@@ -71,6 +80,11 @@ def for_client(
         case _:
             pass
     return {"run": run, "uri": text.uri, "message": fields}
+
+
+def cause_for_client(because: Consequence, spec: ScenarioSpec) -> dict[str, Any]:
+    """Return the clause that another clause of its scenario is unknown because of."""
+    return {"clause": spec.clauses[because.position].iri, "position": because.position, "words": because.words}
 
 
 def clause_at(results: RunResults, index: int, line: int) -> ClauseSpec | None:

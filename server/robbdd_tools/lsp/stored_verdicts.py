@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Results
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, with_cause
 from robbdd_tools.lsp.saved_results import load_results, save_results
+from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.store import RunStore, store_beside
 from robbdd_tools.run.stored_results import RUNNING
 from robbdd_tools.workbench.judged_text import read_texts
@@ -144,9 +145,13 @@ def _found(run: StoredRun) -> FoundRun:
         if result.finished is not None:
             text = named[result.spec.model]
             scenario = judged_scenario(result.spec, text.uri, text.digests, run=run.number, index=index, seed=seed)
-            for clause in result.spec.clauses:
-                if clause.line in result.judged:
-                    scenario.judge(clause.iri, judgement(clause, result.judged[clause.line], text.digests))
+            causes = Causes()
+            for position, clause in enumerate(result.spec.clauses):
+                judged = result.judged.get(clause.line)
+                if judged is not None:
+                    found = judgement(clause, judged, text.digests)
+                    because = causes.add(position, clause.name, judged)
+                    scenario.judge(clause.iri, with_cause(found, because, result.spec))
             scenario.mark_vacuous(vacuous)
             scenario.finished = True
             scenarios.append(scenario)

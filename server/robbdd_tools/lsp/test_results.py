@@ -78,6 +78,7 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
                 "margin": judgement.margin,
                 "said": judgement.said,
                 "failure": judgement.failure or judgement.said,
+                "because": _because(judgement.because or None, None, judgement.because_words),
                 "stale": judgement.digest != now.clauses.get(iri),
             }
             for iri, judgement in scenario.clauses.items()
@@ -153,8 +154,15 @@ def _imported_scenario(
                 "margin": clause.margin,
                 "said": clause.said,
                 "failure": clause.failure,
+                "because": clause.because
+                and _because(clause.because.iri, clause.because.position, clause.because.words),
                 "stale": False,
             }
             for position, clause in enumerate(scenario.clauses)
         ],
     }
+
+
+def _because(clause: str | None, position: int | None, words: str) -> dict[str, Any] | None:
+    """Return the clause that another clause is unknown because of; ``None`` if ``words`` name none."""
+    return {"clause": clause, "position": position, "words": words} if words else None

@@ -77,7 +77,7 @@ def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[s
         place = file.place(clause.iri)
         if place is not None:
             yield f"    {printable(str(place))}"
-        yield f"    {printable(because) or _verdict_words(clause)}"
+        yield f"    {_verdict_words(clause) if because is None else printable(because.words)}"
 
 
 def _verdict_words(clause: ClauseResult) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Protocol
 
 from robbdd_tools.monitor.verdict import Cause, Outcome
@@ -30,22 +31,50 @@ class JudgedClause(Protocol):
         ...
 
 
-def consequences(clauses: Iterable[tuple[str, JudgedClause]]) -> Iterator[str]:
-    """Yield for each clause of an execution words that name its cause; empty if it is no consequence of another one.
+@dataclass(frozen=True, slots=True)
+class Consequence:
+    """The clause of the same execution that is the cause of an unknown one.
 
-    The clauses are given by their names and verdicts, in the order of the scenario. A clause is a consequence of an
-    earlier one if it is unknown for the same reason, or if it waits for something that never happened for that reason.
+    ``position`` is its number, from 0, and ``same_reason`` is true if both are unknown for one reason.
     """
-    causes: list[tuple[str, JudgedClause]] = []
-    for name, judged in clauses:
-        found = next(((other, one) for other, one in causes if other != name and _is_cause(one, judged)), None)
-        if found is None:
-            if judged.verdict != Outcome.HOLDS and judged.reason:
-                causes.append((name, judged))
-            yield ""
-        else:
-            same = found[1].reason == judged.reason
-            yield f"unknown for the same reason as {found[0]}" if same else f"unknown because of {found[0]}"
+
+    position: int
+    name: str
+    same_reason: bool
+
+    @property
+    def words(self) -> str:
+        """A text that names the cause and takes the place of the reason."""
+        return f"unknown {'for the same reason as' if self.same_reason else 'because of'} {self.name}"
+
+
+class Causes:
+    """The clauses of one execution that have a reason of their own."""
+
+    def __init__(self) -> None:
+        self._known: list[tuple[int, str, JudgedClause]] = []
+
+    def add(self, position: int, name: str, judged: JudgedClause) -> Consequence | None:
+        """Add a clause, and return the earlier clause that is its cause.
+
+        A clause is a consequence of an earlier one if it is unknown for the same reason, or if it waits for something
+        that never happened for that reason.
+        """
+        for number, other, one in self._known:
+            if other != name and _is_cause(one, judged):
+                return Consequence(number, other, one.reason == judged.reason)
+        if judged.verdict != Outcome.HOLDS and judged.reason:
+            self._known.append((position, name, judged))
+        return None
+
+
+def consequences(clauses: Iterable[tuple[str, JudgedClause]]) -> Iterator[Consequence | None]:
+    """Yield for each clause of an execution the clause that is its cause, or ``None`` if it has none.
+
+    The clauses are given by their names and verdicts, in the order of the scenario.
+    """
+    causes = Causes()
+    return (causes.add(position, name, judged) for position, (name, judged) in enumerate(clauses))
 
 
 def _is_cause(earlier: JudgedClause, judged: JudgedClause) -> bool:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any, cast
 from xml.etree import ElementTree
 
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged
+from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.report import (
     SIGNS,
     failure_words,
@@ -27,7 +28,21 @@ _CLAUSE = re.compile(
     r"^(?P<sign>[✔✗?])(?P<said>.*?)  \[(?:Given|When|Then) (?P<sentence>[^\n]*)\]$", re.DOTALL | re.MULTILINE
 )
 """A clause in a test case's output; only a reason may span several lines."""
+_CONSEQUENCE = re.compile(r"unknown (?:because of|for the same reason as) ")
+"""How a JUnit report begins the text of a clause that is unknown because of another one; a reason follows a colon."""
 _MARGIN = re.compile(r" ([+−][\d.]+ [^\s:]+)")
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedCause:
+    """The clause that another clause is unknown because of.
+
+    ``iri`` and ``position`` (its number) are ``None`` if the file lacks them. ``words`` name it.
+    """
+
+    iri: str | None
+    position: int | None
+    words: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +50,8 @@ class ImportedClause:
     """A judged clause of an imported execution.
 
     ``iri`` is ``None`` if the file does not contain the IRI of the clause. ``said`` is the full text of the verdict,
-    ``margin`` is the text of the margin alone, and ``failure`` is the text with the reason first.
+    ``margin`` is the text of the margin alone, and ``failure`` is the text with the reason first. ``because`` is
+    the clause of the same execution that is the cause.
     """
 
     iri: str | None
@@ -44,6 +60,7 @@ class ImportedClause:
     margin: str
     said: str
     failure: str
+    because: ImportedCause | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,19 +127,32 @@ def _scenario(entry: _Reader) -> ImportedScenario:
         entry.number("variation"),
         ", ".join(value_words(name, value) for name, value in values.items()),
         None,
-        tuple(_clause(clause) for clause in entry.mapping("clauses").entries()),
+        tuple(_clauses(entry.mapping("clauses").entries())),
         (entry.optional("execution") or "").rpartition(":")[2],
     )
 
 
-def _clause(entry: _Reader) -> ImportedClause:
+def _clauses(entries: Iterable[_Reader]) -> Iterator[ImportedClause]:
+    causes, found = Causes(), list[ImportedClause]()
+    for position, entry in enumerate(entries):
+        judged, clause = _clause(entry)
+        because = causes.add(position, entry.text("name", clause.sentence), judged)
+        if because is not None:
+            cause = ImportedCause(found[because.position].iri, because.position, because.words)
+            clause = replace(clause, because=cause)
+        found.append(clause)
+        yield clause
+
+
+def _clause(entry: _Reader) -> tuple[ClauseJudged, ImportedClause]:
     verdict = entry.text("verdict")
     if verdict not in _VERDICTS:
         raise BrokenResults(f"{entry.path}.verdict: expected one of {', '.join(_VERDICTS)}, got '{verdict}'")
     robustness, at = entry.measure("robustness"), entry.measure("at")
-    judged = ClauseJudged(0, 0, verdict, robustness, entry.text("unit", ""), at, entry.text("reason", ""))
+    reason, cause = entry.text("reason", ""), entry.text("cause", "")
+    judged = ClauseJudged(0, 0, verdict, robustness, entry.text("unit", ""), at, reason, cause=cause)
     sentence = plain_sentence(entry.text("sentence"))
-    return ImportedClause(
+    return judged, ImportedClause(
         entry.text("iri"),
         sentence,
         verdict,
@@ -221,7 +251,9 @@ def _described(found: re.Match[str]) -> ImportedClause:
     if verdict == Outcome.VIOLATED:
         state = " ".join(filter(None, (verdict, "by" * bool(measured), state)))
     failure = "" if verdict == Outcome.HOLDS else reason_first(state, reason)
-    return ImportedClause(None, found["sentence"], verdict, measured[1] if measured else "", said, failure)
+    margin_words = measured[1] if measured else ""
+    because = ImportedCause(None, None, words) if _CONSEQUENCE.match(words) else None
+    return ImportedClause(None, found["sentence"], verdict, margin_words, said, failure, because)
 
 
 def _seconds(text: str | None) -> float | None:

@@ -8,11 +8,10 @@ from xml.etree import ElementTree
 
 from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.fault import Fault
-from robbdd_tools.monitor.verdict import Cause, Outcome
-from robbdd_tools.protocol.messages import never_judged
+from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.consequences import consequences
 from robbdd_tools.run.report import SIGNS, plain_sentence, values_words, verdict_words
-from robbdd_tools.run.results import RunResults, ScenarioResult
+from robbdd_tools.run.results import RunResults, ScenarioResult, unjudged
 
 
 def junit(results: RunResults) -> str:
@@ -74,14 +73,10 @@ def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
     A clause that is unknown because of another one names that one in place of the reason.
     """
     clauses = scenario.spec.clauses
-    every = [
-        scenario.judged.get(clause.line)
-        or never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
-        for clause in clauses
-    ]
+    every = [scenario.judged.get(clause.line) or unjudged(clause) for clause in clauses]
     names = (clause.name for clause in clauses)
     for clause, judged, because in zip(clauses, every, consequences(zip(names, every, strict=True)), strict=True):
-        words = f"{SIGNS[Outcome.UNKNOWN]} {because}" if because else verdict_words(judged, clause)
+        words = f"{SIGNS[Outcome.UNKNOWN]} {because.words}" if because else verdict_words(judged, clause)
         yield Outcome(judged.verdict), f"{words}  [{clause.role.capitalize()} {plain_sentence(clause.sentence)}]"
 
 

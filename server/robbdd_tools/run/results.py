@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -20,6 +20,7 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
+from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.vacuous_clauses import Vacuity
 
 
@@ -155,6 +156,11 @@ class RunResults:
         return (_scenario(scenario, vacuous) for scenario in self.scenarios)
 
 
+def unjudged(clause: ClauseSpec) -> ClauseJudged:
+    """Return the verdict on a clause that no message judged."""
+    return never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
+
+
 def finished_in(document: Mapping[str, Any]) -> frozenset[int]:
     """Return the numbers of the scenarios that a results document lists as finished."""
     return frozenset(i for i, entry in enumerate(document["scenarios"]) if entry.get("duration") is not None)
@@ -179,9 +185,7 @@ def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str,
         "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
         "contacts": [] if scenario.finished is None else [asdict(one) for one in scenario.finished.contacts],
         "verdict": str(scenario.verdict),
-        "clauses": [
-            _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, "")) for clause in spec.clauses
-        ],
+        "clauses": list(_clauses(scenario, vacuous)),
     }
 
 
@@ -190,19 +194,28 @@ def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:
     return {"execution": tree.name, "tree": tree.tree, "node": node}
 
 
-def _clause(clause: ClauseSpec, judged: ClauseJudged | None, vacuous: str) -> dict[str, Any]:
+def _clauses(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> Iterator[dict[str, Any]]:
+    causes = Causes()
+    for position, clause in enumerate(scenario.spec.clauses):
+        judged = scenario.judged.get(clause.line) or unjudged(clause)
+        because = causes.add(position, clause.name, judged)
+        found = _clause(clause, judged, vacuous.get(clause.iri, ""))
+        yield {**found, "because": None if because is None else because.position}
+
+
+def _clause(clause: ClauseSpec, judged: ClauseJudged, vacuous: str) -> dict[str, Any]:
     return {
         "iri": clause.iri,
         "name": clause.name,
         "role": clause.role,
         "sentence": clause.sentence,
-        "verdict": "unknown" if judged is None else judged.verdict,
-        "robustness": None if judged is None else judged.robustness,
-        "unit": "" if judged is None else judged.unit,
-        "at": None if judged is None else judged.at,
-        "reason": "the clause was never judged" if judged is None else judged.reason,
-        "worst_at": None if judged is None else judged.worst_at,
+        "verdict": judged.verdict,
+        "robustness": judged.robustness,
+        "unit": judged.unit,
+        "at": judged.at,
+        "reason": judged.reason,
+        "worst_at": judged.worst_at,
         "vacuous": vacuous,
-        "cause": str(Cause.NOT_EXECUTED) if judged is None else judged.cause,
-        "operand": None if judged is None else judged.operand,
+        "cause": judged.cause,
+        "operand": judged.operand,
     }
