@@ -3,7 +3,7 @@ import { test } from "node:test";
 import type { CodeLens, InlayHint, TextDocument } from "vscode";
 import { appearanceOf, marksOfHints, marksOfLenses } from "../src/verdicts/marks";
 
-const FRESH = { stale: false, rejudged: false, consequence: false };
+const FRESH = { stale: false, rejudged: false, consequence: false, reason: "" };
 const LINES = ["Scenario tidy {", "    at-goal: holds(<thing>)", "    | <cube> | <bin> |"];
 
 test("a hint without a verdict has no mark", () => {
@@ -25,7 +25,8 @@ test("*holds* is drawn after its clause, other verdicts before it, but after the
     hint(1, 27, "? 0/4", { verdict: "unknown", stale: false }),
     hint(2, 22, "✗ at-goal", { verdict: "violated", stale: false }),
     hint(1, 27, "✗ 0 of 4 hold", { verdict: "violated", stale: false, rejudged: true }),
-    hint(1, 27, "? unknown because of carry", { verdict: "unknown", stale: false, consequence: true }),
+    hint(1, 27, "? because of carry", { verdict: "unknown", stale: false, consequence: true }),
+    hint(1, 27, "? unknown", { verdict: "unknown", stale: false, reason: "it timed out" }),
     hint(0, 13, "4 scenarios", undefined),
   ]);
   assert.deepEqual(
@@ -36,10 +37,20 @@ test("*holds* is drawn after its clause, other verdicts before it, but after the
       ["? 0/4", 1, 4, "before"],
       ["✗ at-goal", 2, 22, "after"],
       ["✗ 0 of 4 hold", 1, 27, "after"],
-      ["? unknown because of carry", 1, 27, "after"],
+      ["? because of carry", 1, 27, "after"],
+      ["? unknown", 1, 4, "before"],
     ],
   );
-  assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", "", ""]);
+  assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", "", "", ""]);
+});
+
+test("the reason is before a clause in a long line, after which it would be out of sight", () => {
+  const long = `    at-goal: holds(${"<thing> is located at <goal>, ".repeat(3)})`;
+  const document = { lineAt: () => ({ text: long, firstNonWhitespaceCharacterIndex: 4 }) } as unknown as TextDocument;
+  const shown = (data: object) => marksOfHints(document, [hint(0, long.length, "? unknown", data)]).map(({ words }) => words);
+  const unknown = { verdict: "unknown", stale: false };
+  assert.deepEqual(shown({ ...unknown, reason: "it timed out" }), ["? unknown it timed out"]);
+  assert.deepEqual(shown(unknown), ["? unknown"]);
 });
 
 test("a pass rate is drawn at the end of the line below its lens", () => {

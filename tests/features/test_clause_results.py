@@ -218,8 +218,14 @@ def test_the_hint_of_a_consequence_names_its_cause() -> None:
         (hint,) = clause_hints(case.snapshot, case.uri, judged(case, *verdicts))
         return hint.label, "consequence" in appearance(hint)
 
-    assert shown(following) == ("? unknown because of carry", True)
-    assert shown(HOLDS, following) == ("? 1/2  unknown because of carry", True)
+    assert shown(following) == ("? because of carry", True)
+    assert shown(HOLDS, following) == ("? 1/2  because of carry", True)
+    (hint,) = clause_hints(case.snapshot, case.uri, judged(case, replace(UNKNOWN, failure="lost (at 2 s) (unknown)")))
+    assert appearance(hint)["reason"] == "lost (at 2 s)"
+    (hint,) = clause_hints(
+        case.snapshot, case.uri, judged(case, replace(VIOLATED, failure="violated by −12 mm at 3.40 s"))
+    )
+    assert "reason" not in appearance(hint)
     assert shown(UNKNOWN, following) == ("? 0/2", False)
     assert shown(VIOLATED, following)[1] is False
 

@@ -11,6 +11,8 @@ export interface Appearance {
   readonly rejudged: boolean;
   /** The clause is unknown only because of another one, which has the reason. */
   readonly consequence: boolean;
+  /** Why a clause does not hold; empty if there is nothing to say beyond the margin. */
+  readonly reason: string;
 }
 
 /** Text before or after a place of a document, with its tooltip. */
@@ -22,6 +24,9 @@ export interface Mark extends Appearance {
   readonly tooltip: string;
 }
 
+/** Columns of a line after which there is no room for a reason in a window of usual size. */
+const LONG_LINE = 80;
+
 type Text = Pick<vscode.TextDocument, "lineAt">;
 
 /** The appearance of a hint or a lens of the server; undefined if it has no verdict. */
@@ -31,7 +36,7 @@ export function appearanceOf(shown: object): Appearance | undefined {
     return undefined;
   }
   const verdict = data["verdict"] === "holds" || data["verdict"] === "violated" ? data["verdict"] : "unknown";
-  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true, consequence: data["consequence"] === true };
+  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true, consequence: data["consequence"] === true, reason: typeof data["reason"] === "string" ? data["reason"] : "" };
 }
 
 /**
@@ -53,8 +58,13 @@ export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[])
     // The editor draws nothing at the row of a table, nor at a consequence, whose test has no message.
     return appearance.verdict === "holds" || appearance.rejudged || appearance.consequence || text[first] === "|"
       ? [{ ...mark, character, side: "after" }]
-      : [{ ...mark, character: first, side: "before" }];
+      : [{ ...mark, words: besideTest(mark, text), character: first, side: "before" }];
   });
+}
+
+/** The words before a clause: the editor draws the reason after it, which in a long line is out of sight. */
+function besideTest({ words, reason }: Pick<Mark, "words" | "reason">, text: string): string {
+  return reason === "" || text.length <= LONG_LINE ? words : `${words} ${reason}`;
 }
 
 /** The pass rates, at the ends of the lines below their lenses. */

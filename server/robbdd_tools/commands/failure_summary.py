@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.consequences import consequences
+from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.report import SIGNS, failure_words
 
 if TYPE_CHECKING:
@@ -33,7 +34,9 @@ def failure_summary(
             number = (errors or {}).get(judged.fault)
             if number is not None:
                 judged = replace(judged, reason=f"no evidence, because of error {number}")
-            groups.setdefault((Outcome(judged.verdict), clause.name, judged.reason), []).append((clause, judged))
+            groups.setdefault((Outcome(judged.verdict), clause_title(clause), judged.reason), []).append(
+                (clause, judged)
+            )
     found = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0][0] is not Outcome.VIOLATED))
     lines = [(outcome, _line(outcome, name, failures)) for (outcome, name, _), failures in found[:MAX_CAUSES]]
     if len(found) > MAX_CAUSES:
@@ -43,10 +46,10 @@ def failure_summary(
 
 def _causes(scenario: ScenarioResult) -> Iterator[tuple[ClauseSpec, ClauseJudged]]:
     clauses = [(one, scenario.judged[one.line]) for one in scenario.spec.clauses if one.line in scenario.judged]
-    named = [(clause.name, judged) for clause, judged in clauses]
+    named = [(clause_title(clause), judged) for clause, judged in clauses]
     for (clause, judged), because in zip(clauses, consequences(named), strict=True):
         if judged.verdict != Outcome.HOLDS and because is None:
-            yield clause, judged
+            yield clause, readable(judged, scenario.spec)
 
 
 def _line(outcome: Outcome, name: str, failures: list[tuple[ClauseSpec, ClauseJudged]]) -> str:

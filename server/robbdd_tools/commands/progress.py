@@ -35,6 +35,7 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
 )
 from robbdd_tools.protocol.run_folder import DEBUG_HOST
+from robbdd_tools.run.readable import readable
 from robbdd_tools.run.report import SIGNS, contact_words, deciding_words, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
@@ -209,9 +210,13 @@ class Display:
         self._console.print(plain(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
         self._output(self._printed.pop(index, []))
         rows = [
-            (judged, printable(plain_sentence(clause.sentence)), printable(deciding_words(clause, judged)))
+            (
+                readable(known, spec),
+                printable(plain_sentence(clause.sentence)),
+                printable(deciding_words(clause, known)),
+            )
             for clause in spec.clauses
-            if (judged := scenario.judged.get(clause.line)) is not None
+            if (known := scenario.judged.get(clause.line)) is not None
         ]
         width = max((len(sentence) for _, sentence, _ in rows), default=0)
         for number, (judged, sentence, decided) in enumerate(rows):

@@ -64,6 +64,14 @@ class ResultHint:
         return bool(self.failing) and all(judgement.because for _, judgement in self.failing)
 
     @property
+    def reason(self) -> str:
+        """Why the clause does not hold in its worst execution; empty if the margin says it, or another clause."""
+        if self.worst is None or self.rejudged is not None or self.is_consequence:
+            return ""
+        # The verdict follows in brackets.
+        return self.worst[1].failure.rpartition(" (")[0]
+
+    @property
     def tooltip(self) -> str:
         """The full text of the hint. It is shortened if there are many variations."""
         remarks = [_CHANGED] * self.stale if self.rejudged is None else [_REJUDGED] * self.rejudged.usable
@@ -93,6 +101,7 @@ def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
     if isinstance(shown, ResultHint):
         found |= {"rejudged": True} if shown.rejudged is not None else {}
         found |= {"consequence": True} if shown.is_consequence else {}
+        found |= {"reason": shown.reason} if shown.reason else {}
     return found
 
 
@@ -266,7 +275,8 @@ def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) 
     if worst.outcome == "undefined":
         label += " no step"
     if failing and len({judgement.because_words for _, judgement in failing}) == 1 and worst.because_words:
-        label = f"{sign} {worst.because_words}" if len(judged) == 1 else f"{label}  {worst.because_words}"
+        words = worst.because_words.removeprefix("unknown ")
+        label = f"{sign} {words}" if len(judged) == 1 else f"{label}  {words}"
     if worst.fault:
         label += " error in code"
     vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""

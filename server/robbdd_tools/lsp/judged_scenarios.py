@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import never_judged
+from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.report import failure_words, margin, values_words, verdict_words
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, share
     outcome = Outcome(message.verdict)
     undefined = outcome is Outcome.UNKNOWN and message.cause == Cause.NO_STEP
     return Judgement(
-        clause.name,
+        clause_title(clause),
         "undefined" if undefined else str(outcome),
         margin(message.robustness, message.unit),
         _BADNESS[outcome] + (message.robustness or 0.0),

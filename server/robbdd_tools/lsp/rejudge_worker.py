@@ -28,6 +28,7 @@ from robbdd_tools.protocol.judge_orders import JudgeOrder, StoredTrace
 from robbdd_tools.protocol.manifest_file import MANIFEST
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.protocol.spec_changes import AGAIN
+from robbdd_tools.run.readable import readable
 from robbdd_tools.run.store import NoSuchRun, RunStore
 from robbdd_tools.workbench.edited_executions import EditedExecution, edited_executions
 from robbdd_tools.workbench.model import DraftFile
@@ -36,7 +37,8 @@ from robbdd_tools.workbench.trace_judge import JudgeEnded, TraceJudge
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import ClauseJudged
     from robbdd_tools.protocol.specs import Manifest
-    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.run.readable import readable
+from robbdd_tools.run.store import StoredRun
 
 _LOG = logging.getLogger(__name__)
 GONE = f"the run is gone: {AGAIN}"
@@ -125,7 +127,7 @@ class Worker:
             for message in judged.get(one.index, ()):
                 clause = known.get(message.line)
                 if clause is not None:
-                    _keep_worst(clauses, clause.iri, judgement(clause, message, digests))
+                    _keep_worst(clauses, clause.iri, judgement(clause, readable(message, spec), digests))
             found[place.number, one.index] = RejudgedExecution("", clauses)
         return found
 

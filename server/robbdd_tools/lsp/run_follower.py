@@ -22,6 +22,7 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
 )
 from robbdd_tools.run.consequences import Causes, Consequence
+from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
@@ -107,7 +108,10 @@ class RunFollower:
         Such a clause is unknown in the report, but its verdict is not stored.
         """
         self._results.apply(message)
-        because = self._because(message) if isinstance(message, ClauseJudged) else None
+        because = None
+        if isinstance(message, ClauseJudged):
+            because = self._because(message)
+            message = readable(message, self._results.scenarios[message.index].spec, self._results.faults)
         match message:
             case ScenarioStarted(index):
                 self._scenario(index)
@@ -157,7 +161,7 @@ class RunFollower:
             self._results.scenarios[message.index].spec,
         )
         causes = self._causes.setdefault(message.index, Causes())
-        return None if clause is None else causes.add(spec.clauses.index(clause), clause.name, message)
+        return None if clause is None else causes.add(spec.clauses.index(clause), clause_title(clause), message)
 
     def _judge(self, message: ClauseJudged, because: Consequence | None) -> None:
         clause = clause_at(self._results, message.index, message.line)

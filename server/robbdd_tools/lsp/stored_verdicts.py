@@ -18,13 +18,15 @@ from robbdd_tools.features.run_verdicts import JudgedScenario, Results
 from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, with_cause
 from robbdd_tools.lsp.saved_results import load_results, save_results
 from robbdd_tools.run.consequences import Causes
+from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.store import RunStore, store_beside
 from robbdd_tools.run.stored_results import RUNNING
 from robbdd_tools.workbench.judged_text import read_texts
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
-    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.run.readable import clause_title, readable
+from robbdd_tools.run.store import StoredRun
 
 _LOG = logging.getLogger(__name__)
 
@@ -149,8 +151,9 @@ def _found(run: StoredRun) -> FoundRun:
             for position, clause in enumerate(result.spec.clauses):
                 judged = result.judged.get(clause.line)
                 if judged is not None:
-                    found = judgement(clause, judged, text.digests)
-                    because = causes.add(position, clause.name, judged)
+                    shown = readable(judged, result.spec, results.faults)
+                    found = judgement(clause, shown, text.digests)
+                    because = causes.add(position, clause_title(clause), judged)
                     scenario.judge(clause.iri, with_cause(found, because, result.spec))
             scenario.mark_vacuous(vacuous)
             scenario.finished = True

@@ -11,6 +11,7 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.consequences import consequences
+from robbdd_tools.run.readable import title
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, value_words
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def _summary(clause: ClauseResult) -> str:
 
 def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[str]:
     """Yield each clause with its place. A clause that is unknown because of another one names that one."""
-    named = [(clause.name, clause) for clause in failed]
+    named = [(title(clause.name, clause.sentence), clause) for clause in failed]
     for clause, because in zip(failed, consequences(named), strict=True):
         yield f"{SIGNS[clause.verdict]} {printable(clause.name)}: {printable(plain_sentence(clause.sentence))}"
         place = file.place(clause.iri)

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged
 from robbdd_tools.run.consequences import Causes
+from robbdd_tools.run.readable import title
 from robbdd_tools.run.report import (
     SIGNS,
     failure_words,
@@ -136,7 +137,7 @@ def _clauses(entries: Iterable[_Reader]) -> Iterator[ImportedClause]:
     causes, found = Causes(), list[ImportedClause]()
     for position, entry in enumerate(entries):
         judged, clause = _clause(entry)
-        because = causes.add(position, entry.text("name", clause.sentence), judged)
+        because = causes.add(position, title(entry.text("name", ""), clause.sentence), judged)
         if because is not None:
             cause = ImportedCause(found[because.position].iri, because.position, because.words)
             clause = replace(clause, because=cause)

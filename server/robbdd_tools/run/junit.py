@@ -10,6 +10,7 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.consequences import consequences
+from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.report import SIGNS, plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult, unjudged
 
@@ -74,9 +75,13 @@ def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
     """
     clauses = scenario.spec.clauses
     every = [scenario.judged.get(clause.line) or unjudged(clause) for clause in clauses]
-    names = (clause.name for clause in clauses)
+    names = (clause_title(clause) for clause in clauses)
     for clause, judged, because in zip(clauses, every, consequences(zip(names, every, strict=True)), strict=True):
-        words = f"{SIGNS[Outcome.UNKNOWN]} {because.words}" if because else verdict_words(judged, clause)
+        words = (
+            f"{SIGNS[Outcome.UNKNOWN]} {because.words}"
+            if because
+            else verdict_words(readable(judged, scenario.spec), clause)
+        )
         yield Outcome(judged.verdict), f"{words}  [{clause.role.capitalize()} {plain_sentence(clause.sentence)}]"
 
 

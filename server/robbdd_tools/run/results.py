@@ -21,6 +21,7 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.consequences import Causes
+from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.vacuous_clauses import Vacuity
 
 
@@ -198,7 +199,7 @@ def _clauses(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> Iterator[d
     causes = Causes()
     for position, clause in enumerate(scenario.spec.clauses):
         judged = scenario.judged.get(clause.line) or unjudged(clause)
-        because = causes.add(position, clause.name, judged)
+        because = causes.add(position, clause_title(clause), judged)
         found = _clause(clause, judged, vacuous.get(clause.iri, ""))
         yield {**found, "because": None if because is None else because.position}
 
