@@ -2,7 +2,7 @@ import { defineConfig } from "eslint/config";
 import tseslint from "typescript-eslint";
 
 export default defineConfig(
-  { ignores: ["out/", "node_modules/"] },
+  { ignores: ["out/", "node_modules/", "src/answers/"] },
   {
     files: ["src/**/*.ts", "test/**/*.ts", "webviews/**/*.ts"],
     extends: [tseslint.configs.strictTypeChecked, tseslint.configs.stylisticTypeChecked],

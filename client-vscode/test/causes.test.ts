@@ -1,9 +1,10 @@
 // Of several clauses with one cause, only the cause has the reason; the server says which clauses are its consequences.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Because, ClauseJudged, RunMessage } from "../src/runs/messages";
+import type { Because, ClauseJudged } from "../src/runs/messages";
 import { RunReport } from "../src/runs/report";
 import { folded, outcomeOf } from "../src/testing/outcomes";
+import { message } from "./messages.kit";
 
 const UNREACHABLE = "panda cannot reach a free place";
 const NEVER = `event evt-pick-end never occurred: ${UNREACHABLE}`;
@@ -22,19 +23,17 @@ test("a consequence has errored and names its cause, without a message of its ow
 });
 
 test("the report of a run has the reason of a cause, and at its consequences the name of the cause", () => {
-  const clause = (name: string, verdict: ClauseJudged["verdict"], reason: string, because?: Because | null): RunMessage => ({
-    type: "ClauseJudged", index: 0, line: 7, name, sentence: name, verdict, robustness: null, unit: "", at: null, reason,
-    failure: `${reason} (${verdict})`, ...(because === undefined ? {} : { because }),
-  });
+  const clause = (name: string, verdict: ClauseJudged["verdict"], reason: string, because: Because | null = null) =>
+    message("ClauseJudged", { name, sentence: name, verdict, reason, failure: `${reason} (${verdict})`, because });
   const run = new RunReport("fetch.bdd");
   const lines = [
-    { type: "ScenarioStarted", index: 0, name: "t:fetch", values: "" } as const,
-    clause("carry", "violated", UNREACHABLE, null),
+    message("ScenarioStarted"),
+    clause("carry", "violated", UNREACHABLE),
     clause("in-hand", "unknown", NEVER, BECAUSE),
-    // Equal texts alone fold nothing, and a server of an earlier version names no causes.
+    // Equal texts alone fold nothing.
     clause("at-goal", "unknown", UNREACHABLE),
-    { type: "ScenarioFinished", index: 0, simulated: 9, wall: 0.5, stepping: 0.3 } as const,
-  ].flatMap((message) => run.add(message));
+    message("ScenarioFinished"),
+  ].flatMap((said) => run.add(said));
   assert.deepEqual(lines.filter((line) => /[✗?]/.test(line)).map((line) => line.trim()), [
     `✗ carry: violated: ${UNREACHABLE}`,
     "? in-hand: unknown because of carry",

@@ -4,6 +4,7 @@ import type { RunMessage } from "../src/runs/messages";
 import { RunFollower } from "../src/testing/follower";
 import { type FoundScenario, showResults } from "../src/testing/results";
 import { fileRuns } from "../src/testing/selection";
+import { message } from "./messages.kit";
 import { FILE, World, at, recorded, words } from "./testing.kit";
 import type { ListedTest } from "../src/testing/listing";
 
@@ -55,22 +56,22 @@ test("executions run separately, the file runs all of them", async () => {
   assert.deepEqual(runs("tidy", "fetch"), [{ uri: FILE, only: [{ variant: "t:fetch" }] }]);
 });
 
-const begun = {
-  type: "ScenarioStarted", name: "fetch", values: "part = cube1", variant: "t:fetch", variation: 1, source: at(9),
-} as const;
-const judged = { type: "ClauseJudged", line: 7, unit: "m", at: 1, reason: "", failure: "", ...words("held", 0) } as const;
+const begun = { name: "fetch", values: "part = cube1", source: at(9) };
+const judged = { unit: "m", at: 1, ...words("held", 0) };
 
 test("a clause of an execution that is repeated is as good as its worst verdict", async () => {
   const world = executing();
   const { told, sink } = recorded();
   const follower = new RunFollower(world.tree, sink, "fetch.bddx", () => 0);
   const verdicts = [0.01, -0.02, 0.03].flatMap((robustness, index): RunMessage[] => [
-    { ...begun, index, execution: "x:by-ours" },
-    { type: "ClauseStarted", index, line: 7, ...words("held", 0) },
-    { ...judged, index, robustness, verdict: robustness < 0 ? "violated" : "holds", failure: robustness < 0 ? "pushed (violated)" : "" },
+    message("ScenarioStarted", { ...begun, index, execution: "x:by-ours" }),
+    message("ClauseStarted", { index, ...words("held", 0) }),
+    message("ClauseJudged", {
+      ...judged, index, robustness, verdict: robustness < 0 ? "violated" : "holds", failure: robustness < 0 ? "pushed (violated)" : "",
+    }),
   ]);
-  for (const message of verdicts) {
-    follower.take({ run: "1", uri: MODEL, message });
+  for (const verdict of verdicts) {
+    follower.take({ run: "1", uri: MODEL, message: verdict });
   }
   await follower.settled();
   const failed = "failed part = cube1 / Then held";
@@ -92,7 +93,7 @@ test("kept results of executions are theirs, the worst of several repetitions", 
   const clause = { clause: "t:held", position: null, sentence: "", margin: "", stale: false };
   const result = (execution: string, verdict: "holds" | "violated"): FoundScenario => ({
     uri: MODEL, variant: "t:fetch", execution, variation: 1, values: "", seconds: null, stale: false,
-    clauses: [{ ...clause, verdict, said: verdict, failure: verdict }],
+    clauses: [{ ...clause, verdict, said: verdict, failure: verdict, because: null }],
   });
   const results = [result("x:by-ours", "violated"), result("x:by-ours", "holds"), result("x:by-catalog", "holds")];
   await showResults(world.tree, [...results, result("x:gone", "violated")], sink);

@@ -4,7 +4,7 @@ import { type GraphPicture, isGraphPicture, remark } from "../src/panels/graph/a
 import { LARGEST, fitted, panned, revealed, zoomed } from "../webviews/graph/viewport";
 
 const WINDOW = { width: 800, height: 600 };
-const NODE = { iri: "i", concept: "story", name: "sort", source: null };
+const NODE = { iri: "i", concept: "story", name: "sort", source: null } as const;
 const PICTURE: GraphPicture = {
   uri: "file:///m.bdd",
   svg: "<svg/>",

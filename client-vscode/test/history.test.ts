@@ -19,7 +19,7 @@ const RUN: ClauseRun = {
   stale: false,
 };
 const HISTORY = { clause: "https://e.org/at-goal", name: "at-goal", runs: [RUN, { ...RUN, run: 2, judged: { holds: 2, violated: 1, unknown: 0 } }] };
-const STORED = { run: 1, folder: "file:///cell/1", path: "m.bdd", seed: 1, complete: true, state: "finished", finished: 1, total: 1, holds: 1, violated: 0, unknown: 0, problem: null };
+const STORED = { run: 1, folder: "file:///cell/1", path: "m.bdd", model: "file:///cell/m.bdd", seed: 1, complete: true, state: "finished", finished: 1, total: 1, holds: 1, violated: 0, unknown: 0, problem: null };
 const CHANGE: ClauseChange = { iri: "i", name: "at-goal", before: "holds", after: "violated", margin_before: 0.012, margin_after: -0.003, unit: "m", reason: "too far" };
 const COMPARISON = {
   before: STORED,
@@ -29,7 +29,7 @@ const COMPARISON = {
   same: 3,
   flipped: 1,
   changes: [
-    { name: "s", values: "", repetition: 1, before: null, after: null, clauses: [CHANGE] },
+    { name: "s", values: "", variant: "t:v", repetition: 1, before: null, after: null, clauses: [CHANGE] },
   ],
 };
 
@@ -67,7 +67,7 @@ function asked(method: string): unknown[] {
   const requests: unknown[] = [];
   LanguageClient.answers.set(method, (params) => {
     requests.push(params);
-    return method === "robbdd/history" ? HISTORY : method === "robbdd/compare" ? COMPARISON : { runs: [STORED, { ...STORED, run: 2 }] };
+    return method === "robbdd/history" ? HISTORY : method === "robbdd/compare" ? COMPARISON : { store: "file:///cell/runs", runs: [STORED, { ...STORED, run: 2 }] };
   });
   return requests;
 }

@@ -4,13 +4,14 @@ import { mock, test } from "node:test";
 import type { RunProgress } from "../src/presentation";
 import type { RunMessage } from "../src/runs/messages";
 import { RunMonitor } from "../src/runs/monitor";
+import { message } from "./messages.kit";
 
 const URI = "file:///cell/fetch.bdd";
 
 function scenario(index: number): RunMessage[] {
   return [
-    { type: "ScenarioStarted", index, name: "t:fetch -- 1", values: "part = cube" },
-    { type: "ScenarioFinished", index, simulated: 9, wall: 0.5, stepping: 0.3 },
+    message("ScenarioStarted", { index }),
+    message("ScenarioFinished", { index }),
   ];
 }
 
@@ -18,8 +19,8 @@ test("the status is updated at the start and the end of a run, and at intervals 
   mock.timers.enable({ apis: ["setTimeout"] });
   const shown: RunProgress[][] = [];
   const monitor = new RunMonitor((runs) => shown.push([...runs]));
-  const say = (message: RunMessage): void => {
-    monitor.accept({ run: "1", uri: URI, message });
+  const say = (said: RunMessage): void => {
+    monitor.accept({ run: "1", uri: URI, message: said });
   };
   say({ type: "RunStarted", total: 8000, simulator: "mujoco 4.0.0" });
   assert.deepEqual(shown, [[{ finished: 0, total: 8000 }]]);
@@ -43,9 +44,7 @@ test("a scenario that is executed again counts once, with its last outcome", () 
   mock.timers.enable({ apis: ["setTimeout"] });
   let summary = "";
   const monitor = new RunMonitor((_, words) => (summary = words));
-  const judged = (verdict: "holds" | "violated"): RunMessage => ({
-    type: "ClauseJudged", index: 0, line: 7, sentence: "s", verdict, robustness: null, unit: "", at: null, reason: "", failure: "",
-  });
+  const judged = (verdict: "holds" | "violated"): RunMessage => message("ClauseJudged", { verdict });
   const [started, finished] = scenario(0);
   assert.ok(started && finished);
   const messages = [started, judged("violated"), finished, started, judged("holds"), finished];

@@ -5,6 +5,7 @@ import { type PreviewLine, isPreview, lineAt } from "../src/preview/answer";
 const MODEL = "file:///m.bdd";
 const entry = (line: number, from: [number, number], to: [number, number], uri = MODEL): PreviewLine => ({
   line,
+  iri: "t:held",
   uri,
   range: { start: { line: from[0], character: from[1] }, end: { line: to[0], character: to[1] } },
 });
@@ -34,8 +35,8 @@ test("the cursor outside of everything leads nowhere", () => {
 
 test("an answer of another version is told apart", () => {
   assert.ok(isPreview({ uri: MODEL, text: "", problem: null, lines: LINES, shown: 2, total: 2 }));
-  assert.ok(isPreview({ text: "", problem: "line 1: oh", lines: [] }));
-  for (const other of [undefined, null, {}, { text: "", problem: null }, { text: "", problem: null, lines: [{}] }]) {
+  assert.ok(isPreview({ uri: MODEL, text: "", problem: "line 1: oh", lines: [], shown: 0, total: 0 }));
+  for (const other of [undefined, null, {}, { uri: MODEL, text: "", problem: null, shown: 0, total: 0 }, { uri: MODEL, text: "", problem: null, lines: [{}], shown: 0, total: 0 }]) {
     assert.ok(!isPreview(other));
   }
 });

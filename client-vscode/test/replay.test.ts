@@ -120,10 +120,10 @@ test("a recording is parsed from a link only", () => {
 
 test("stored runs are told with how they came out", () => {
   const extent = { complete: true, state: "finished", finished: 5, total: 5 } as const;
-  const run = { run: 3, folder: "", path: "m.bdd", seed: 1, ...extent, holds: 4, violated: 1, unknown: 0, problem: null };
-  assert.ok(isRuns({ runs: [run] }));
+  const run = { run: 3, folder: "", path: "m.bdd", model: "", seed: 1, ...extent, holds: 4, violated: 1, unknown: 0, problem: null };
+  assert.ok(isRuns({ store: "", runs: [run] }));
   for (const wrong of [{ holds: "4" }, { state: "lost" }, { finished: undefined }, { total: null }]) {
-    assert.ok(!isRuns({ runs: [{ ...run, ...wrong }] }), JSON.stringify(wrong));
+    assert.ok(!isRuns({ store: "", runs: [{ ...run, ...wrong }] }), JSON.stringify(wrong));
   }
   assert.equal(outcome(run), "4 hold, 1 violated");
   assert.equal(outcome({ ...run, state: "interrupted", total: 9 }), "4 hold, 1 violated (interrupted: 5 of 9 finished)");

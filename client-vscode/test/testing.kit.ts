@@ -166,7 +166,7 @@ export const words = (name: string, position: number) => ({
   clause: `t:${name}`,
   position,
   name,
-  role: "then",
+  role: "then" as const,
   sentence: `cube is ${name}`,
   source: at(3),
 });

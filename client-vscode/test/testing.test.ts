@@ -5,7 +5,8 @@ import { outcomeOf } from "../src/testing/outcomes";
 import { fileRuns } from "../src/testing/selection";
 import { RunFollower } from "../src/testing/follower";
 import { isFoundResults, showResults } from "../src/testing/results";
-import type { RunMessage } from "../src/runs/messages";
+import type { Because } from "../src/runs/messages";
+import { message } from "./messages.kit";
 import { FILE, Node, SCENE, World, at, recorded, story, variant, words } from "./testing.kit";
 
 test("stories and variants are listed first, scenarios when they are asked for", async () => {
@@ -158,17 +159,18 @@ test("a run shows clauses of unopened files, and ends", async () => {
   let clock = 0;
   const { told, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => (clock += 10));
-  const judged = { type: "ClauseJudged", index: 0, line: 7, robustness: 0.01, unit: "m", at: 1, reason: "", failure: "" } as const;
-  const messages: RunMessage[] = [
-    { type: "RunStarted", total: 1, simulator: "mujoco" },
-    { type: "ScenarioStarted", index: 0, name: "fetch", values: "part = cube2", variant: "t:fetch", variation: 2, source: at(9) },
-    { type: "ClauseStarted", index: 0, line: 7, ...words("held", 0) },
-    { ...judged, verdict: "holds", ...words("held", 0) },
-    { type: "ClauseStarted", index: 0, line: 8, ...words("placed", 1) },
-    { ...judged, verdict: "violated", robustness: -0.02, failure: "violated by −20 mm", ...words("placed", 1) },
-  ];
-  for (const message of messages) {
-    follower.take({ run: "1", uri: FILE, message });
+  const judged = { robustness: 0.01, unit: "m", at: 1 };
+  const carry: Because = { clause: "t:held", position: 0, words: "unknown because of held" };
+  for (const said of [
+    message("RunStarted"),
+    message("ScenarioStarted", { values: "part = cube2", variation: 2, source: at(9) }),
+    message("ClauseStarted", words("held", 0)),
+    message("ClauseJudged", { ...judged, ...words("held", 0) }),
+    message("ClauseStarted", { line: 8, ...words("placed", 1) }),
+    message("ClauseJudged", { ...judged, verdict: "violated", robustness: -0.02, failure: "violated by −20 mm", ...words("placed", 1) }),
+    message("ClauseJudged", { verdict: "unknown", failure: "held it (unknown)", because: carry, ...words("moved", 2) }),
+  ]) {
+    follower.take({ run: "1", uri: FILE, message: said });
   }
   await follower.interrupt("The server stopped.");
   assert.deepEqual(told, [
@@ -176,6 +178,7 @@ test("a run shows clauses of unopened files, and ends", async () => {
     "passed part = cube2 / Then held 10",
     "started part = cube2 / Then placed",
     "failed part = cube2 / Then placed violated by −20 mm [part = cube2] @3",
+    "errored part = cube2 / Then moved unknown because of held",
     "end",
   ]);
   // Listing the scenarios afterwards keeps the run's results.
@@ -189,12 +192,12 @@ test("a clause that a cancelled run left open gets no result", async () => {
   const world = new World();
   const { told, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
-  const open = { type: "ClauseJudged", index: 0, line: 7, robustness: null, unit: "", at: null, cancelled: true } as const;
-  for (const message of [
-    { type: "ScenarioStarted", index: 0, name: "fetch", values: "", variant: "t:fetch", variation: 2, source: at(9) },
-    { ...open, verdict: "unknown", reason: "the run was cancelled", failure: "the run was cancelled (unknown)", ...words("held", 0) },
-  ] as const) {
-    follower.take({ run: "1", uri: FILE, message });
+  const open = { verdict: "unknown", reason: "the run was cancelled", failure: "the run was cancelled (unknown)", cancelled: true } as const;
+  for (const said of [
+    message("ScenarioStarted", { variation: 2, source: at(9) }),
+    message("ClauseJudged", { ...open, ...words("held", 0) }),
+  ]) {
+    follower.take({ run: "1", uri: FILE, message: said });
   }
   await follower.settled();
   assert.deepEqual(told, []);
@@ -216,7 +219,7 @@ test("a refused run shows the reason at the requested tests", async () => {
 });
 
 const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };
-const held = { clause: null, position: 0, sentence: "cube is held", verdict: "holds", margin: "", said: "✔", failure: "" } as const;
+const held = { clause: null, position: 0, sentence: "cube is held", verdict: "holds", margin: "", said: "✔", failure: "", because: null } as const;
 
 test("imported results are shown by position, with their words and their share of the time", async () => {
   const world = new World();

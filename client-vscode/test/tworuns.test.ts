@@ -1,7 +1,9 @@
 // The server executes one run at a time: a second one is refused, and the first one is still shown.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import type { RunMessage } from "../src/runs/messages";
 import { LanguageClient } from "./languageclient.kit";
+import { message } from "./messages.kit";
 import { words } from "./testing.kit";
 import { editor } from "./vscode.kit";
 import { MODEL, client, command, openWindow, until } from "./window.kit";
@@ -35,8 +37,8 @@ class Runs {
     this.answers[run]?.(answer);
   }
 
-  say(run: string, message: object): void {
-    client().listeners.get("robbdd/runMessage")?.({ run, uri: MODEL.toString(), message });
+  say(run: string, said: RunMessage): void {
+    client().listeners.get("robbdd/runMessage")?.({ run, uri: MODEL.toString(), message: said });
   }
 }
 
@@ -46,7 +48,7 @@ async function twoRuns(): Promise<{ readonly runs: Runs; readonly first: string;
   await editor.controller.resolveHandler(undefined);
   const runs = new Runs();
   const { name: first, ended: firstEnded } = await runs.begin();
-  runs.say(first, { type: "RunStarted", total: 1, simulator: "mujoco 4.0.0" });
+  runs.say(first, message("RunStarted"));
   const second = await runs.begin();
   assert.notEqual(first, second.name);
   runs.answer(1, { problem: "a run is in progress: cancel it first", momentary: true });
@@ -57,12 +59,11 @@ async function twoRuns(): Promise<{ readonly runs: Runs; readonly first: string;
 test("a refused second run leaves the first one's entry open, and its verdicts reach it", async () => {
   const { runs, first, firstEnded } = await twoRuns();
   assert.equal(editor.openRuns, 1);
-  runs.say(first, { type: "ScenarioStarted", index: 0, name: "t:fetch -- 1", values: "part = cube1", variant: "t:fetch", variation: 1 });
-  const judged = { verdict: "holds", robustness: null, unit: "", at: null, reason: "" };
-  runs.say(first, { type: "ClauseJudged", index: 0, line: 7, ...words("held", 0), ...judged });
-  runs.say(first, { type: "ScenarioFinished", index: 0, simulated: 9, wall: 0.5, stepping: 0.3 });
+  runs.say(first, message("ScenarioStarted", { values: "part = cube1" }));
+  runs.say(first, message("ClauseJudged", words("held", 0)));
+  runs.say(first, message("ScenarioFinished"));
   await until(() => editor.passed.length > 0);
-  runs.say(first, { type: "RunFinished", ok: true });
+  runs.say(first, message("RunFinished"));
   runs.answer(0, { run: first, total: 1, holds: 1, violated: 0, unknown: 0, cancelled: false });
   await firstEnded;
   await until(() => editor.openRuns === 0);

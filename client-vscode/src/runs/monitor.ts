@@ -37,7 +37,7 @@ export class RunMonitor implements vscode.Disposable {
   }
 
   accept(notification: RunNotification): void {
-    const { uri, message, run = uri } = notification;
+    const { uri, message, run } = notification;
     let report = this.reports.get(run);
     if (report === undefined || message.type === "RunStarted") {
       report = new RunReport(vscode.workspace.asRelativePath(vscode.Uri.parse(uri)));

@@ -82,9 +82,6 @@ export class RunFollower<I extends Item<I>> {
 
   private async begin(model: string, message: ScenarioStarted, instant: number): Promise<void> {
     const { variant: iri, variation } = message;
-    if (iri === undefined || variation === undefined) {
-      return;
-    }
     const execution = message.execution ?? undefined;
     // An execution is in the run model; a variant may be in one that it imports.
     const uri = execution === undefined ? (message.source?.uri ?? model) : model;
@@ -101,7 +98,7 @@ export class RunFollower<I extends Item<I>> {
 
   private start(message: ClauseStarted, instant: number): void {
     const scenario = this.scenarios.get(message.index);
-    const item = scenario && this.clause(scenario, message, message.sentence ?? "");
+    const item = scenario && this.clause(scenario, message);
     if (scenario !== undefined && item !== undefined) {
       scenario.since = instant;
       // A repetition does not replace the verdict of the one before.
@@ -113,31 +110,20 @@ export class RunFollower<I extends Item<I>> {
 
   private judge(message: ClauseJudged, instant: number): void {
     const scenario = this.scenarios.get(message.index);
-    const item = scenario && this.clause(scenario, message, message.sentence);
-    if (scenario === undefined || item === undefined || message.cancelled === true) {
+    const item = scenario && this.clause(scenario, message);
+    if (scenario === undefined || item === undefined || message.cancelled) {
       return;
     }
     const judged = folded(outcomeOf(message, scenario.values), message.because);
     const outcome = this.worst.add(item, judged, message.robustness);
     this.tree.note(item, outcome.note);
-    showOutcome(this.sink, item, outcome, message.source ?? null, instant - scenario.since);
+    showOutcome(this.sink, item, outcome, message.source, instant - scenario.since);
     scenario.since = instant;
   }
 
-  private clause(scenario: Begun<I>, message: ClauseStarted | ClauseJudged, sentence: string): I | undefined {
-    if (message.position === undefined) {
-      return undefined;
-    }
-    const listed: ListedTest = {
-      kind: "clause",
-      id: message.clause ?? "",
-      name: message.name ?? "",
-      detail: sentence,
-      role: message.role ?? "",
-      place: message.source ?? null,
-      tests: [],
-    };
-    return this.tree.clause(scenario.item, message.position, listed);
+  private clause(scenario: Begun<I>, { position, clause, name, sentence, role, source }: ClauseStarted | ClauseJudged): I {
+    const listed: ListedTest = { kind: "clause", id: clause, name, detail: sentence, role, place: source, tests: [] };
+    return this.tree.clause(scenario.item, position, listed);
   }
 }
 

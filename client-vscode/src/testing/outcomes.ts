@@ -1,4 +1,6 @@
 // Convert a clause's verdict to the editor's test states.
+import type { Immutable } from "../immutable";
+import type { Because as FoundBecause } from "../answers/testresults";
 import type { Because } from "../runs/messages";
 import { marginOf, seconds } from "../runs/report";
 
@@ -49,7 +51,7 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
 }
 
 /** The outcome of a clause that is unknown because of another one; if there is no such cause, `outcome` itself. */
-export function folded(outcome: Outcome, because: Because | null | undefined): Outcome {
+export function folded(outcome: Outcome, because: Because | Immutable<FoundBecause> | null | undefined): Outcome {
   return because ? { state: "errored", note: because.words, failure: { text: because.words, folded: true } } : outcome;
 }
 

@@ -1,6 +1,6 @@
 // Show results of earlier or external runs as a finished run.
-import { isRecord } from "../values";
-import type { Because } from "../runs/messages";
+import type * as answers from "../answers/testresults";
+import type { Immutable } from "../immutable";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
@@ -8,46 +8,12 @@ import { type Outcome, failureOf, folded } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
-export interface FoundClause {
-  /** IRI, or the number of the clause in its scenario from 0; one of them is known. */
-  readonly clause: string | null;
-  readonly position: number | null;
-  readonly sentence: string;
-  readonly verdict: "holds" | "violated" | "unknown";
-  readonly margin: string;
-  /** Sign, margin, instant and reason. */
-  readonly said: string;
-  /** Why the clause is violated or unknown, the reason first. */
-  readonly failure: string;
-  /** The clause of the same execution that is the cause, if the clause has no reason of its own. */
-  readonly because?: Because | null;
-  readonly stale: boolean;
-}
+export { isFoundResults } from "../answers/validators.mjs";
 
-export interface FoundScenario {
-  readonly uri: string;
-  readonly variant: string;
-  /** IRI of the execution that it was run by, if any. */
-  readonly execution?: string | null;
-  readonly variation: number;
-  readonly values: string;
-  readonly seconds: number | null;
-  readonly stale: boolean;
-  readonly clauses: readonly FoundClause[];
-}
-
+export type FoundScenario = Immutable<answers.Scenario>;
+export type FoundClause = Immutable<answers.Clause>;
 /** The answer to the server's requests `robbdd/testResults` and `robbdd/importResults`. */
-export interface FoundResults {
-  readonly problem: string | null;
-  /** Executions of variants that the workspace does not have. */
-  readonly left: number;
-  readonly scenarios: readonly FoundScenario[];
-}
-
-/** Whether an answer is understood by this version of the extension. */
-export function isFoundResults(value: unknown): value is FoundResults {
-  return isRecord(value) && typeof value["left"] === "number" && Array.isArray(value["scenarios"]);
-}
+export type FoundResults = Immutable<answers.FoundResults>;
 
 export interface Shown<I> {
   /** Items whose text has changed since. */

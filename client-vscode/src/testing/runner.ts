@@ -142,7 +142,7 @@ export class TestRunner implements vscode.Disposable {
 
   /** Show the messages of a run; one started elsewhere gets its own entry. */
   private hear(message: RunNotification): void {
-    const name = message.run ?? message.uri;
+    const name = message.run;
     let follower = this.followers.get(name);
     if (follower === undefined && !name.startsWith(OWN) && message.message.type === "RunStarted") {
       const title = titleOf(message.uri);

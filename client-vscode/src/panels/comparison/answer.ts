@@ -1,79 +1,19 @@
 // The server's answer to `robbdd/compare`: two stored runs side by side; docs/schemas/compare.schema.json.
+import type * as answers from "../../answers/compare";
+import type { Immutable } from "../../immutable";
 import { signed } from "../../quantity";
-import { isRecord } from "../../values";
 import type { Verdict } from "../replay/answer";
-import { type StoredRun, isRun } from "../runs";
 
+export { isComparison } from "../../answers/validators.mjs";
+
+export type Comparison = Immutable<answers.Comparison>;
 /** All verdicts of one run on a clause. */
-export interface Totals {
-  readonly holding: number;
-  readonly total: number;
-  /** Smallest margin, SI. */
-  readonly margin: number | null;
-  readonly unit: string;
-}
-
-export interface ComparedClause {
-  readonly iri: string;
-  readonly name: string;
-  readonly role: string;
-  readonly before: Totals;
-  readonly after: Totals;
-}
-
+export type Totals = Immutable<answers.Totals>;
+export type ComparedClause = Immutable<answers.Clause>;
 /** An execution in one of the runs. */
-export interface Side {
-  readonly index: number;
-  readonly verdict: Verdict;
-  readonly seed: number;
-  readonly trace: boolean;
-}
-
-export interface ClauseChange {
-  readonly iri: string;
-  readonly name: string;
-  /** null: that run did not judge the clause. */
-  readonly before: Verdict | null;
-  readonly after: Verdict | null;
-  readonly margin_before: number | null;
-  readonly margin_after: number | null;
-  readonly unit: string;
-  readonly reason: string;
-}
-
-export interface Change {
-  readonly name: string;
-  readonly values: string;
-  readonly repetition: number;
-  /** null: that run does not have the execution. */
-  readonly before: Side | null;
-  readonly after: Side | null;
-  readonly clauses: readonly ClauseChange[];
-}
-
-export interface Comparison {
-  readonly before: StoredRun;
-  readonly after: StoredRun;
-  readonly inputs: readonly string[];
-  readonly clauses: readonly ComparedClause[];
-  readonly same: number;
-  readonly flipped: number;
-  readonly changes: readonly Change[];
-}
-
-/** Whether an answer has the form of this version: its parts, but not every number. */
-export function isComparison(value: unknown): value is Comparison {
-  return (
-    isRecord(value) &&
-    isRun(value["before"]) &&
-    isRun(value["after"]) &&
-    typeof value["same"] === "number" &&
-    typeof value["flipped"] === "number" &&
-    ["inputs", "clauses", "changes"].every((name) => Array.isArray(value[name])) &&
-    (value["clauses"] as unknown[]).every((one) => isRecord(one) && isRecord(one["before"]) && isRecord(one["after"])) &&
-    (value["changes"] as unknown[]).every((one) => isRecord(one) && Array.isArray(one["clauses"]))
-  );
-}
+export type Side = NonNullable<Immutable<answers.Side>>;
+export type Change = Immutable<answers.Change>;
+export type ClauseChange = Change["clauses"][number];
 
 const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 

@@ -1,50 +1,16 @@
 // The server's answer to `robbdd/history`: the verdicts on one clause in the stored runs; docs/schemas/history.schema.json.
+import type * as answers from "../../answers/history";
+import { isClauseHistory } from "../../answers/validators.mjs";
+import type { Immutable } from "../../immutable";
 import { signed } from "../../quantity";
-import { isRecord } from "../../values";
 import type { Verdict } from "../replay/answer";
 
-export interface ClauseRun {
-  readonly run: number;
-  readonly path: string;
-  readonly state: string;
-  /** ISO 8601. */
-  readonly began: string;
-  /** Number of executions by the clause's verdict. */
-  readonly judged: Readonly<Record<Verdict, number>>;
-  /** Smallest margin, SI. */
-  readonly margin: number | null;
-  readonly unit: string;
-  /** Number of the worst execution. */
-  readonly worst: number;
-  /** Whether the clause's text has changed since; null if unknown. */
-  readonly stale: boolean | null;
-}
+export type ClauseHistory = NonNullable<Immutable<answers.ClauseHistory>>;
+export type ClauseRun = Immutable<answers.Run>;
 
-export interface ClauseHistory {
-  readonly clause: string;
-  readonly name: string;
-  readonly runs: readonly ClauseRun[];
-}
-
-/** Whether an answer has the form of this version. */
+/** Whether an answer has the form of this version and names a clause. */
 export function isHistory(value: unknown): value is ClauseHistory {
-  return (
-    isRecord(value) &&
-    typeof value["clause"] === "string" &&
-    typeof value["name"] === "string" &&
-    Array.isArray(value["runs"]) &&
-    value["runs"].every(isRun)
-  );
-}
-
-function isRun(value: unknown): boolean {
-  return (
-    isRecord(value) &&
-    ["run", "worst"].every((name) => typeof value[name] === "number") &&
-    ["path", "state", "began", "unit"].every((name) => typeof value[name] === "string") &&
-    isRecord(value["judged"]) &&
-    (value["margin"] === null || typeof value["margin"] === "number")
-  );
+  return value !== null && isClauseHistory(value);
 }
 
 /** The worst verdict of a run. */
