@@ -164,6 +164,23 @@ describe("with three dimensions", () => {
     await fault.click();
     await workbench.cursorAt((await session.placeOf(CELL, "model bin_model")).line);
   });
+
+  step("a wrong name of the robot's file has a quick fix, and the right one leads into the file", async () => {
+    const { line, column } = await session.placeOf(CELL, 'tool: "tcp"');
+    await workbench.goTo(line, column + 'tool: "tcp'.length);
+    await workbench.type("x");
+    await workbench.problem("has no site or body 'tcpx'; did you mean 'tcp'?").then((problem) => problem.waitFor());
+    await workbench.closePanel();
+    await workbench.goTo(line, column + 'tool: "t'.length);
+    await workbench.page.keyboard.press("Control+.");
+    await workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'tcp'" }).waitFor();
+    await workbench.page.keyboard.press("Enter");
+    await workbench.lines('tool: "tcp"').waitFor();
+    await workbench.goTo(line, column + 'tool: "t'.length);
+    await workbench.page.keyboard.press("F12");
+    await workbench.lines('<site name="tcp"').waitFor();
+    await workbench.screenshot("scene-definition");
+  });
 });
 
 describe("without WebGL", () => {
