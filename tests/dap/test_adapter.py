@@ -14,6 +14,7 @@ from typing import Any
 import psutil
 import pytest
 
+from commands.test_debug import Debugger
 from dap.clients import Client
 from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
@@ -158,6 +159,24 @@ def test_what_cannot_be_debugged_is_refused_with_its_reason(client: Client, tmp_
         assert client.refused("launch", **arguments).startswith(reason), arguments
     assert client.refused("stackTrace", threadId=1) == "no scenario is debugged yet: launch one"
     assert client.refused("nonsense") == "the request 'nonsense' is not supported"
+
+
+def test_python_code_is_debugged_in_the_same_session(client: Client) -> None:
+    client.ask("initialize", adapterID="robbdd", supportsStartDebuggingRequest=True)
+    client.ask("launch", program=str(MODEL), noStore=True, python=True, **CHOICE)
+    client.event("initialized")
+    client.ask("setExceptionBreakpoints", filters=["opens"])
+    client.ask("configurationDone")
+    while (request := client.read())["type"] != "request":
+        pass
+    assert request["command"] == "startDebugging"
+    python = Debugger(request["arguments"]["configuration"]["port"])
+    python.answer("initialize", adapterID="test", pathFormat="path")
+    python.ask("attach", justMyCode=True)
+    python.until(type="event", event="initialized")
+    python.ask("configurationDone")
+    assert "at-source opens" in stopped(client)[1]
+    client.ask("continue", threadId=1)
 
 
 @pytest.mark.parametrize("end", ["close", "kill"])
