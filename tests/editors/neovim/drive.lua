@@ -1,4 +1,4 @@
--- What a user of Neovim sees: an error and its fix, completion, hover, colours, hints, a rename across files.
+-- What a user of Neovim sees: an error and its fix, completion, hover, colours, hints, lenses, a rename across files.
 local function expect(condition, words)
   if not condition then
     io.stderr:write("FAILED: " .. words .. "\n")
@@ -61,6 +61,17 @@ expect(#tokens.data > 100, "words have their colours")
 local last = vim.api.nvim_buf_line_count(0)
 local range = { start = { line = 0, character = 0 }, ["end"] = { line = last, character = 0 } }
 expect(#ask("textDocument/inlayHint", { range = range }) >= 4, "variables have hints")
+
+eventually("the lens above the scenario is shown", function()
+  for _, mark in ipairs(vim.api.nvim_buf_get_extmarks(0, -1, 0, -1, { details = true })) do
+    for _, chunk in ipairs(mark[4].virt_text or {}) do
+      if chunk[1] == "Run" then
+        return true
+      end
+    end
+  end
+  return false
+end)
 
 local edit = ask("textDocument/rename", { position = place("places.left", true), newName = "near_ws" })
 expect(vim.tbl_count(edit.changes) == 2, "a rename reaches the scene")
