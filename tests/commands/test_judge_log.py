@@ -263,7 +263,8 @@ def test_the_result_is_a_stored_run_that_is_judged_again_and_not_simulated(model
     )
     drawn = json.loads(shown.stdout)
     names = [body["name"] for body in drawn["bodies"]]
-    assert names == ["env:bin_left", "env:bin_right", "env:cube0", "env:table"]
+    assert names == ["env:bin_left", "env:bin_right", "env:cube0", "env:table", "env:panda/tool"]
+    assert drawn["forces"] is None
     assert drawn["bodies"][2]["position"] == pytest.approx([0.45, 0.0, 0.825], abs=1e-3)
     again = robbdd(folder, "judge", "1", "pickplace.bdd")
     assert again.returncode == 0, again.stderr

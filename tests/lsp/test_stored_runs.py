@@ -64,6 +64,21 @@ async def test_a_stored_run_is_listed_and_shown_as_documented(editor: Editor) ->
     assert {shape["kind"] for shape in shown["shapes"]} >= {"box", "plane", "cylinder"}
     assert any(workspace["name"].endswith(":right_ws") for workspace in shown["workspaces"])
 
+    (tool,) = shown["tools"]
+    assert names[tool["body"]] == f"{tool['agent']}/tool"
+    away = np.linalg.norm(
+        poses[:, frames["bodies"].index(tool["body"]), :3] - poses[:, cube, :3],
+        axis=-1,
+    )
+    (grip,) = (
+        one for one in shown["forces"] if [name.partition(":")[2] for name in one["between"]] == ["panda", "cube0"]
+    )
+    assert grip["bodies"] == [tool["body"], names.index(grip["between"][1])]
+    pressed = numbers(grip["peaks"]) > 0
+    assert pressed.shape == times.shape
+    assert 0.2 < pressed.mean() < 0.9, "the gripper holds the cube for a part of the execution"
+    assert away[pressed].max() < 0.15 < away[~pressed].max(), "only what is near is gripped"
+
     clause = next(entry for entry in shown["clauses"] if entry["name"] == "at-goal")
     (part,) = clause["parts"]
     end = next(event["time"] for event in shown["events"] if event["name"].endswith(":evt-place-end"))

@@ -1,7 +1,7 @@
 """``python -m robbdd_tools.agent.show_trace RUN INDEX``: print the contents of a stored trace as one JSON object.
 
 The object has those parts of ``docs/schemas/trace.schema.json`` that are read from the trace: shapes, meshes, bodies,
-frames and workspaces. Exit codes: 0 done; 2 the trace cannot be read, with the reason on standard error.
+frames, workspaces, tools and forces. Exit codes: 0 done; 2 the trace cannot be read, with the reason on standard error.
 """
 
 from __future__ import annotations
@@ -10,17 +10,25 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.protocol.run_folder import trace_file
-from robbdd_tools.traces.mcap_file import UnreadableTrace, read_views
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace, read_views
 from robbdd_tools.world.arrays import array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import Trace
 
 FAILED = 2
 FRAMES = 4000
 """Maximum number of frames; longer executions are thinned to every second one, every third …"""
+SAME = 1e-6
+"""Largest difference of two stamps of the same sample, s."""
 
 
 def show(path: Path) -> dict[str, Any]:
@@ -39,22 +47,59 @@ def shown(seen: Mapping[str, Sequence[tuple[float, Any]]]) -> dict[str, Any]:
     numbers = {name: number for number, name in enumerate(start)}
     moving = [frame["child_frame_id"] for frame in transforms[-1]] if len(transforms) > 1 else []
     every = -(-len(transforms) // FRAMES)
-    times = [time for time, _ in seen["/tf"]][::every]
+    times = np.array([time for time, _ in seen["/tf"]][::every])
+    trace = read_trace(path).trace
+    rows = np.clip(np.searchsorted(trace.times, times - SAME), 0, len(trace.times) - 1)
+    tools = {agent: poses for agent in trace.grips if np.isfinite(poses := _tool(trace, agent)[rows]).all()}
+    bodies = [_body(name, pose) for name, pose in start.items()]
+    bodies += [_body(f"{agent}/tool", poses[0].tolist()) for agent, poses in tools.items()]
+    numbers |= {agent: len(start) + index for index, agent in enumerate(tools)}
     return {
         "shapes": [{**shape, "body": numbers[shape["body"]]} for shape in geometry["shapes"]],
         "meshes": geometry["meshes"],
-        "bodies": [_body(name, pose) for name, pose in start.items()],
+        "bodies": bodies,
         "frames": {
-            "times": array(np.array(times), "float32"),
-            "bodies": [numbers[name] for name in moving],
-            "poses": array(_poses(transforms[::every], moving), "float32"),
+            "times": array(times, "float32"),
+            "bodies": [numbers[name] for name in (*moving, *tools)],
+            "poses": array(
+                np.stack([*np.moveaxis(_poses(transforms[::every], moving), 1, 0), *tools.values()], axis=1), "float32"
+            ),
         },
+        "tools": [{"agent": agent, "body": numbers[agent]} for agent in tools],
+        "forces": None if trace.log else _forces(trace, rows, numbers),
         "workspaces": [{**space, "body": numbers.get(space["body"])} for space in geometry["workspaces"]],
     }
 
 
 def _body(name: str, pose: Sequence[float]) -> dict[str, Any]:
     return {"name": name.removesuffix("/solid"), "position": pose[:3], "orientation": pose[3:]}
+
+
+def _tool(trace: Trace, agent: str) -> FloatArray:
+    """Return the poses of an agent's tool: x, y, z (m), then w, x, y, z; shape (n, 7)."""
+    column = trace.column(agent)
+    return np.hstack([trace.positions[:, column], trace.orientations[:, column]])
+
+
+def _forces(trace: Trace, rows: NDArray[np.intp], numbers: Mapping[str, int]) -> list[dict[str, Any]]:
+    """Return the contact forces between elements, as the largest since the picture before: none is left out.
+
+    ``rows`` (k,) are the samples of the pictures. The last picture also has the forces after it.
+    """
+    starts = [0, *(row + 1 for row in rows[:-1])]
+    found: dict[tuple[str, str], FloatArray] = {}
+    for pair, forces in (*trace.forces.items(), *trace.touches.items()):
+        first, second = sorted(pair, key=lambda name: (name not in trace.grips, name))
+        found[first, second] = np.maximum(found.get((first, second), 0.0), forces)
+    return [
+        {
+            "between": [first, second],
+            "bodies": [numbers.get(first), numbers.get(second)],
+            "peaks": array(np.maximum.reduceat(forces, starts), "float32"),
+        }
+        for (first, second), forces in sorted(found.items())
+        if forces.any()
+    ]
 
 
 def _poses(transforms: Sequence[Sequence[Mapping[str, Any]]], moving: Sequence[str]) -> np.ndarray[Any, Any]:
