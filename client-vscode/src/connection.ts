@@ -4,6 +4,7 @@ import type { Readable } from "node:stream";
 import * as vscode from "vscode";
 import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "vscode-languageclient/node";
 import { type Launch, serverVariables } from "./launch";
+import { isRunProgress } from "./presentation";
 import { RestartBudget } from "./restarts";
 import { VerdictPainter } from "./verdicts/painter";
 
@@ -76,6 +77,12 @@ export function createClient(
         provideCodeLenses: (document, token, next) => {
           const ask = () => next(document, token);
           return verdicts === undefined ? ask() : verdicts.takeLenses(document, ask);
+        },
+        // The status item shows the progress of runs.
+        handleWorkDoneProgress: (token, params, next) => {
+          if (!isRunProgress(token)) {
+            next(token, params);
+          }
         },
         executeCommand: (name, [argument]: unknown[]) => owner.execute(name, argument),
       },

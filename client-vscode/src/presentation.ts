@@ -59,11 +59,16 @@ export function present(server: ServerState, runs: readonly RunProgress[], summa
   }
 }
 
+/** Whether a progress token of the server is that of a run. */
+export function isRunProgress(token: number | string): boolean {
+  return String(token).startsWith("robbdd-run-");
+}
+
 function running(runs: readonly RunProgress[]): Presentation {
   const finished = runs.reduce((sum, run) => sum + run.finished, 0);
   const total = runs.reduce((sum, run) => sum + run.total, 0);
   const text = `$(loading~spin) RobBDD ${finished}/${total}`;
-  return item(text, `Running: ${finished} of ${total} scenarios have ended.`, "robbdd.showRuns");
+  return item(text, "Scenarios that have ended, of all in this run. Click for the messages; RobBDD: Cancel Run ends it.", "robbdd.showRuns");
 }
 
 function idle(command: string, summary: string): Presentation {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { afterInstallation, type ServerState, present } from "../src/presentation";
+import { afterInstallation, type ServerState, isRunProgress, present } from "../src/presentation";
 import { RestartBudget } from "../src/restarts";
 
 const READY: ServerState = { kind: "ready", command: "/usr/bin/robbdd-lsp" };
@@ -17,6 +17,14 @@ test("runs at the same time are counted together", () => {
     { finished: 1, total: 2 },
   ];
   assert.equal(present(READY, runs, "").text, "$(loading~spin) RobBDD 4/16");
+});
+
+test("the number of ended scenarios is said once, and the server's own progress of a run is not shown too", () => {
+  const { text, tooltip } = present(READY, [{ finished: 3, total: 14 }], "");
+  assert.match(text, /3\/14/);
+  assert.doesNotMatch(tooltip, /\d/);
+  assert.ok(isRunProgress("robbdd-run-1"));
+  assert.ok(!isRunProgress("robbdd-rejudge-1") && !isRunProgress(1));
 });
 
 test("after a run its summary is shown and a click leads to the runs", () => {
