@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type GraphPicture, isGraphPicture, remark } from "../src/panels/graph/answer";
-import { LARGEST, fitted, panned, revealed, zoomed } from "../webviews/graph/viewport";
+import { LARGEST, centred, fitted, panned, revealed, zoomed } from "../webviews/graph/viewport";
 
 const WINDOW = { width: 800, height: 600 };
 const NODE = { iri: "i", concept: "story", name: "sort", source: null } as const;
@@ -39,6 +39,12 @@ test("a node in view moves nothing, one outside comes in by the shortest way", (
   assert.deepEqual(revealed(view, { x: 700, y: -50, width: 200, height: 50 }, WINDOW), { x: -116, y: 66, scale: 1 });
   const shifted = panned(view, 5, 7);
   assert.deepEqual(revealed(shifted, { x: 0, y: 50, width: 2000, height: 10 }, WINDOW), { x: 16, y: 7, scale: 1 });
+});
+
+test("a node is shown in the middle at the size of the view, a large one from its start", () => {
+  const view = { x: 5, y: 7, scale: 2 };
+  assert.deepEqual(centred(view, { x: 100, y: 50, width: 100, height: 20 }, WINDOW), { x: 100, y: 180, scale: 2 });
+  assert.deepEqual(centred(view, { x: 100, y: 50, width: 500, height: 20 }, WINDOW), { x: -184, y: 180, scale: 2 });
 });
 
 test("a picture that does not show the whole current model has a remark", () => {

@@ -55,8 +55,8 @@ export class Canvas {
     this.nodes = new Map(found.map((node) => [node.getAttribute("data-iri") ?? "", node]));
     for (const node of found) {
       node.setAttribute("tabindex", "0");
+      // Its name is what can be read in it.
       node.setAttribute("role", "link");
-      node.setAttribute("aria-label", node.querySelector("title")?.textContent ?? "");
     }
     const box = this.scene.getBBox();
     this.picture = { width: Math.max(1, box.x + box.width), height: Math.max(1, box.y + box.height) };

@@ -1,15 +1,16 @@
 // The graph page: a picture with pan and zoom, whose nodes link to their text.
 import "./graph.css";
 import type { FromGraph, GraphState, ToGraph } from "../../src/panels/graph/messages";
-import { button, drawn, element } from "../shared/elements";
+import { drawn, element, iconButton } from "../shared/elements";
 import { connect } from "../shared/host";
+import { toolbar } from "../shared/toolbar";
 import { Canvas } from "./canvas";
-import { type Viewport, fitted, panned, revealed, zoomed } from "./viewport";
+import { type Viewport, centred, fitted, panned, revealed, zoomed } from "./viewport";
 
 const STEP = 60;
 const ZOOM = 1.25;
-/** Minimum initial scale: smaller text is not readable. */
-const READABLE = 0.75;
+/** Minimum initial scale: the text of nodes has the size of the editor's interface then, and a smaller one is not readable. */
+const READABLE = 1;
 
 const host = connect<FromGraph, GraphState>((message) => {
   receive(message as ToGraph);
@@ -23,20 +24,24 @@ let view: Viewport = host.kept?.view ?? { x: 0, y: 0, scale: 1 };
 let uri = host.kept?.uri ?? "";
 /** The shown subject; undefined at first. */
 let subject = host.kept?.subject;
+/** The picture is new, and the node at the cursor has not been shown in it. */
+let fresh = false;
 
 document.body.append(
   element(
     "header",
-    { role: "toolbar", "aria-label": "Picture" },
-    button("Fit", "Show the whole picture (0)", fit),
-    button("−", "Smaller (−, Ctrl+wheel)", () => {
-      zoom(1 / ZOOM);
-    }),
-    percent,
-    button("+", "Larger (+, Ctrl+wheel)", () => {
-      zoom(ZOOM);
-    }),
-    element("span", { class: "space" }),
+    {},
+    toolbar(
+      "Picture",
+      iconButton("whole", "Show the whole picture (0)", fit),
+      iconButton("smaller", "Smaller (−, Ctrl+wheel)", () => {
+        zoom(1 / ZOOM);
+      }),
+      percent,
+      iconButton("larger", "Larger (+, Ctrl+wheel)", () => {
+        zoom(ZOOM);
+      }),
+    ),
     legend(),
   ),
   status,
@@ -47,8 +52,9 @@ function receive(message: ToGraph): void {
   if (message.type === "highlight") {
     canvas.highlight(message.iri);
     if (message.move) {
-      bringIntoView(message.iri);
+      bringIntoView(message.iri, fresh);
     }
+    fresh &&= !message.move;
     return;
   }
   uri = message.uri;
@@ -57,13 +63,15 @@ function receive(message: ToGraph): void {
   canvas.show(message.svg);
   const other = subject !== message.subject;
   subject = message.subject;
+  fresh ||= other;
   move(other ? fitted(canvas.picture, canvas.size, READABLE) : view);
 }
 
-function bringIntoView(iri: string | null): void {
+/** Pan to a node: as little as needed or, in a picture that is still unmoved, until it is in the middle. */
+function bringIntoView(iri: string | null, toMiddle = false): void {
   const box = iri === null ? undefined : canvas.boxOf(iri);
   if (box !== undefined) {
-    move(revealed(view, box, canvas.size));
+    move(toMiddle ? centred(view, box, canvas.size) : revealed(view, box, canvas.size));
   }
 }
 

@@ -40,6 +40,14 @@ export function panned(view: Viewport, dx: number, dy: number): Viewport {
   return { ...view, x: view.x + dx, y: view.y + dy };
 }
 
+/** Show a box of the picture in the middle of the window; a larger box from its start. */
+export function centred(view: Viewport, box: Box, window: Size): Viewport {
+  const place = (start: number, length: number, space: number) => {
+    return length * view.scale > space - 2 * MARGIN ? MARGIN - start * view.scale : (space - length * view.scale) / 2 - start * view.scale;
+  };
+  return { ...view, x: place(box.x, box.width, window.width), y: place(box.y, box.height, window.height) };
+}
+
 /** Pan as little as needed to show a box of the picture; a larger box is shown from its start. */
 export function revealed(view: Viewport, box: Box, window: Size): Viewport {
   const move = (start: number, length: number, space: number) => {

@@ -28,13 +28,18 @@ function current(name) {
   return page.locator(`.current[data-iri$="/${name}"]`);
 }
 
-step("the command shows the graph next to the model", async () => {
+step("the command shows the graph next to the model, at the node of the cursor and large enough to read", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor({ state: "attached" });
+  await cursorAt("goal-untouched:");
   await workbench.command("RobBDD: Show Graph");
   page = workbench.webview("Graph heights.bdd");
   await node("at-goal").filter({ hasText: "part is located at goal" }).waitFor();
   await eventually(async () => assert.equal(await page.locator("[data-iri]").count(), 16));
+  await current("goal-untouched").waitFor();
+  await eventually(async () => assert.ok(await inWindow("goal-untouched")));
+  assert.ok((await percent()) >= 100, "its text has the size of the interface");
+  await workbench.screenshot("graph-opened");
 });
 
 step("the node at the cursor is marked and visible", async () => {
