@@ -5,6 +5,7 @@ import type { ComparisonState, FromComparison, ToComparison } from "../../src/pa
 import { outcome } from "../../src/panels/runs";
 import { button, element } from "../shared/elements";
 import { connect } from "../shared/host";
+import { stacked } from "../shared/tables";
 
 /** Maximum number of executions in the table. */
 const MOST = 500;
@@ -40,7 +41,7 @@ function executions({ before, after, changes }: Comparison): HTMLElement {
     const name = element("td", {}, change.name.replace(/^[^:]*:/, ""), element("div", { class: "remark" }, `${change.values}${again}`));
     return element("tr", {}, name, verdict(change.before), verdict(change.after), element("td", {}, flips), element("td", {}, replays(change, before.run, after.run)));
   });
-  const table = element("table", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text))), ...rows);
+  const table = stacked(heads, rows);
   return changes.length > MOST ? element("div", {}, table, element("p", {}, `… and ${changes.length - MOST} more`)) : table;
 }
 
@@ -74,9 +75,9 @@ function replays({ before, after, clauses: [clause] }: Change, one: number, othe
 }
 
 function clauses({ before, after, clauses: every }: Comparison): HTMLElement {
-  const heads = ["Clause", `Run ${before.run}`, `Run ${after.run}`].map((text) => element("th", { scope: "col" }, text));
+  const heads = ["Clause", `Run ${before.run}`, `Run ${after.run}`];
   const rows = every.map(({ role, name, before: old, after: now }) =>
     element("tr", {}, ...[role === "when" ? "behaviour" : name, totalsWords(old), totalsWords(now)].map((text) => element("td", {}, text))),
   );
-  return element("table", {}, element("tr", {}, ...heads), ...rows);
+  return stacked(heads, rows);
 }

@@ -5,6 +5,8 @@ import { sign } from "../../src/panels/comparison/answer";
 import type { FromHistory, HistoryState, ToHistory } from "../../src/panels/history/messages";
 import { button, drawn, element } from "../shared/elements";
 import { connect } from "../shared/host";
+import { stacked } from "../shared/tables";
+import { toolbar } from "../shared/toolbar";
 
 const WIDTH = 600;
 const HEIGHT = 120;
@@ -25,7 +27,7 @@ const compare = button("Compare the two selected runs", "Show which executions f
 });
 
 document.body.append(
-  element("header", { role: "toolbar", "aria-label": "History" }, compare),
+  element("header", {}, toolbar("History", compare)),
   element("main", {}, title, chart, table),
 );
 
@@ -50,7 +52,7 @@ function enable(): void {
 }
 
 function runs(newest: readonly ClauseRun[], isSelected: (run: number, place: number) => boolean): HTMLElement {
-  const heads = ["", "Run", "Began", "Holds", "Smallest margin", "", ""].map((text) => element("th", { scope: "col" }, text));
+  const heads = ["", "Run", "Began", "Holds", "Smallest margin", "", ""];
   const rows = newest.map((run, place) => {
     const box = element("input", { type: "checkbox", value: run.run, "aria-label": `Select run ${run.run} to compare` });
     box.checked = isSelected(run.run, place);
@@ -64,7 +66,7 @@ function runs(newest: readonly ClauseRun[], isSelected: (run: number, place: num
     const margin = element("td", { class: "number" }, marginOf(run));
     return element("tr", { class: run.stale === true ? "stale" : "" }, element("td", {}, box), ...cells, rate, margin, element("td", {}, worst), element("td", { class: "remark" }, remarkOf(run)));
   });
-  return element("table", {}, element("tr", {}, ...heads), ...rows);
+  return stacked(heads, rows);
 }
 
 /** The smallest margin of each run, the oldest first; nothing if the clause has no margins. */
