@@ -1,16 +1,23 @@
-// The study page: a heat map over two variables, and the distribution of each clause's margins.
+// The study page: a heat map over two variables with its executions and margins, or the matrix of all verdicts.
 import "./study.css";
-import type { FromStudy, StudyState, ToStudy } from "../../src/panels/study/messages";
+import type { FromStudy, StudyPart, StudyState, ToStudy } from "../../src/panels/study/messages";
+import { unpacked } from "../../src/panels/study/packed";
 import type { JudgedClause, JudgedScenario } from "../../src/panels/study/results";
 import { signed } from "../../src/quantity";
-import { drawn, element } from "../shared/elements";
+import { intervalWords } from "../../src/statistics";
+import { announcer, button, drawn, element } from "../shared/elements";
 import { connect } from "../shared/host";
-import { type Bin, type Cell, type Dimension, cell, clauses, dimensions, histogram } from "./tables";
+import { toolbar } from "../shared/toolbar";
+import { executions } from "./executions";
+import { MatrixPart } from "./matrixPart";
+import { type Bin, type Cell, type Dimension, cell, clauses, dimensions, histogram, local, openingPair } from "./tables";
 
 const BINS = 40;
 const WIDTH = 300;
 const HEIGHT = 40;
 const NOTHING = "";
+const NOTE =
+  "Below the counts: 95 % interval (Wilson) of the probability that an execution holds, for executions that are independent samples; an unknown one may be either. Press a cell to list its executions.";
 
 const host = connect<FromStudy, StudyState>((message) => {
   begin(message as ToStudy);
@@ -20,40 +27,65 @@ const across = element("select", { "aria-label": "Variable across" });
 const down = element("select", { "aria-label": "Variable down" });
 const subject = element("select", { "aria-label": "What is counted" });
 const map = element("div", { class: "map" });
+const listed = element("div", { class: "listed" });
 const margins = element("div", { class: "margins" });
+const spoken = announcer();
+const tabs = { factors: tab("Factors", "factors"), matrix: tab("Matrix", "matrix") } as const;
+const choices = element("span", { class: "choices" }, element("label", {}, "Passed: ", subject), element("label", {}, "across ", across), element("label", {}, "down ", down));
+const factors = element("main", {}, title, map, element("p", { class: "note" }, NOTE), listed, element("h2", {}, "Margins of the clauses"), margins);
+const matrix = new MatrixPart(replay, spoken.say);
 let scenarios: readonly JudgedScenario[] = [];
 let found: readonly Dimension[] = [];
 let studied: ToStudy["studied"] | undefined;
+let part: StudyPart = host.kept?.part ?? "factors";
 
-document.body.append(
-  element(
-    "header",
-    { role: "toolbar", "aria-label": "Study" },
-    element("label", {}, "Passed: ", subject),
-    element("label", {}, "across ", across),
-    element("label", {}, "down ", down),
-  ),
-  element("main", {}, title, map, element("h2", {}, "Margins of the clauses"), margins),
-);
+document.body.append(element("header", {}, toolbar("Study", tabs.factors, tabs.matrix, choices, matrix.choices)), factors, matrix.root, spoken.root);
 for (const choice of [across, down, subject]) {
   choice.addEventListener("change", () => {
+    listed.replaceChildren();
     draw();
   });
 }
 
+function tab(words: string, shows: StudyPart): HTMLButtonElement {
+  return button(words, `${words}: show this part of the study`, () => {
+    show(shows);
+  });
+}
+
+/** Show one part of the page. */
+function show(shown: StudyPart): void {
+  part = shown;
+  for (const [name, one] of Object.entries(tabs)) {
+    one.setAttribute("aria-pressed", String(name === part));
+  }
+  factors.hidden = choices.hidden = part !== "factors";
+  matrix.hidden = part !== "matrix";
+  keep();
+}
+
 function begin(message: ToStudy): void {
   ({ studied } = message);
-  ({ scenarios } = message.results);
+  scenarios = unpacked(message.results);
   title.textContent = message.title;
   found = dimensions(scenarios);
   const every = clauses(scenarios);
   offer(subject, [[NOTHING, "scenarios"], ...every.map((clause): Choice => [clause.iri, named(clause)])], host.kept?.clause);
   const names = found.map(({ name }): Choice => [name, local(name)]);
   const none: Choice = [NOTHING, "nothing"];
-  offer(across, [...names, none], host.kept?.across);
-  offer(down, [none, ...names], host.kept?.down ?? found[1]?.name);
+  const [first, second] = openingPair(found);
+  offer(across, [...names, none], host.kept?.across ?? first?.name);
+  offer(down, [none, ...names], host.kept?.down ?? second?.name);
   margins.replaceChildren(...every.map(distribution));
+  matrix.begin(message.title, scenarios, every);
   draw();
+  show(message.show ?? part);
+}
+
+function keep(): void {
+  if (studied !== undefined) {
+    host.keep({ studied, across: across.value, down: down.value, clause: subject.value, part });
+  }
 }
 
 type Choice = readonly [value: string, label: string];
@@ -67,9 +99,7 @@ function offer(select: HTMLSelectElement, choices: readonly Choice[], wanted: st
 
 function draw(): void {
   map.replaceChildren(heatMap(dimension(across.value), dimension(down.value), subject.value));
-  if (studied !== undefined) {
-    host.keep({ studied, across: across.value, down: down.value, clause: subject.value });
-  }
+  keep();
 }
 
 function dimension(name: string): Dimension | undefined {
@@ -81,9 +111,10 @@ function heatMap(columns: Dimension | undefined, rows: Dimension | undefined, cl
   const where = (one: Dimension | undefined, value: string) => (one === undefined ? [] : [[one.name, value] as const]);
   const corner = element("th", { scope: "col", class: "corner" }, rows === undefined ? "" : local(rows.name));
   const body = (rows?.values ?? [NOTHING]).map((value) => {
-    const cells = heads.map((head) =>
-      square(cell(scenarios, [...where(columns, head), ...where(rows, value)], clause), clause),
-    );
+    const cells = heads.map((head) => {
+      const at = [...where(columns, head), ...where(rows, value)];
+      return square(cell(scenarios, at, clause), clause, at.map(([name, one]) => `${local(name)} = ${one}`).join(", "));
+    });
     return element("tr", {}, element("th", { scope: "row" }, value), ...cells);
   });
   const table = element("table", {}, element("tr", {}, corner, ...heads.map((head) => element("th", { scope: "col" }, head))));
@@ -94,19 +125,24 @@ function heatMap(columns: Dimension | undefined, rows: Dimension | undefined, cl
   return table;
 }
 
-/** A cell: the pass rate as colour and text, and the worst margin; it links to the worst execution. */
-function square(counted: Cell | undefined, clause: string): HTMLElement {
+/** A cell: how many hold, as colour and text, their interval and the worst margin; it lists its executions. */
+function square(counted: Cell | undefined, clause: string, words: string): HTMLElement {
   if (counted === undefined) {
     return element("td", { class: "none", title: "Not executed" }, "–");
   }
-  const { passed, total, worst, unit, index } = counted;
-  const press = element("button", { type: "button", title: "Replay the worst of these" }, `${passed}/${total}`);
+  const { passed, total, unknown, worst, unit, indices } = counted;
+  const press = element("button", { type: "button", title: `${words}: list these executions`, "aria-expanded": "false" }, `${passed}/${total}`);
+  press.append(element("small", {}, intervalWords(passed, total, unknown)));
   if (worst !== undefined && unit !== "") {
     press.append(element("small", {}, `worst ${signed(worst, unit)}`));
   }
   press.style.setProperty("--passed", `${(100 * passed) / total}%`);
   press.addEventListener("click", () => {
-    replay(index, clause);
+    for (const other of map.querySelectorAll("[aria-expanded]")) {
+      other.setAttribute("aria-expanded", String(other === press));
+    }
+    listed.replaceChildren(executions(words, indices, scenarios, clause, replay));
+    listed.querySelector("button")?.focus();
   });
   return element("td", {}, press);
 }
@@ -171,9 +207,4 @@ function replay(index: number, clause: string): void {
 /** A behaviour has a generated name, and its sentence differs between variations. */
 function named({ role, name }: JudgedClause): string {
   return role === "when" ? "behaviour" : name;
-}
-
-/** The local name of a variable: the end of its IRI or CURIE. */
-function local(name: string): string {
-  return name.replace(/^.*[/#:]/, "").replace(/^var-/, "");
 }

@@ -14,8 +14,9 @@ export interface Cell {
   /** The smallest margin among them; undefined without any. */
   readonly worst: number | undefined;
   readonly unit: string;
-  /** Number of the scenario with the worst outcome. */
-  readonly index: number;
+  readonly unknown: number;
+  /** Numbers of the scenarios, the worst outcome first. */
+  readonly indices: readonly number[];
 }
 
 export interface Bin {
@@ -44,6 +45,11 @@ export function shown(value: unknown): string {
   return String(value).replace(/^[\w-]+:(?=[^/])/, "");
 }
 
+/** The local name of a variable: the end of its IRI or CURIE. */
+export function local(name: string): string {
+  return name.replace(/^.*[/#:]/, "").replace(/^var-/, "");
+}
+
 /** The variables with several values, in the order of the results. */
 export function dimensions(scenarios: readonly JudgedScenario[]): Dimension[] {
   const found = new Map<string, Set<string>>();
@@ -53,6 +59,17 @@ export function dimensions(scenarios: readonly JudgedScenario[]): Dimension[] {
     }
   }
   return [...found].filter(([, values]) => values.size > 1).map(([name, values]) => ({ name, values: ordered([...values]) }));
+}
+
+/**
+ * The dimensions to show first: the swept one, and one to compare with. Numbers are what a study sweeps, and what has most
+ * values is swept rather than chosen.
+ */
+export function openingPair(found: readonly Dimension[]): readonly [across: Dimension | undefined, down: Dimension | undefined] {
+  const numeric = ({ values }: Dimension) => values.every((value) => value !== "" && Number.isFinite(Number(value)));
+  const rank = (one: Dimension) => (numeric(one) ? 1e6 : 0) + one.values.length;
+  const [across, down] = [...found].sort((one, other) => rank(other) - rank(one));
+  return [across, down];
 }
 
 /** The distinct clauses of the results, in scenario order. */
@@ -78,7 +95,8 @@ export function cell(
   const outcomes = scenarios.flatMap((scenario, index) =>
     where.every(([name, value]) => shown(scenario.values[name]) === value) ? outcomesOf(scenario, index, clause) : [],
   );
-  const [first] = [...outcomes].sort((one, other) => RANK[one.verdict] - RANK[other.verdict] || margin(one) - margin(other));
+  const ordered = [...outcomes].sort((one, other) => RANK[one.verdict] - RANK[other.verdict] || compare(margin(one), margin(other)));
+  const [first] = ordered;
   if (first === undefined) {
     return undefined;
   }
@@ -88,7 +106,8 @@ export function cell(
     total: outcomes.length,
     worst: clause === "" || margins.length === 0 ? undefined : Math.min(...margins),
     unit: first.unit,
-    index: first.index,
+    unknown: outcomes.filter(({ verdict }) => verdict === "unknown").length,
+    indices: ordered.map(({ index }) => index),
   };
 }
 
@@ -126,6 +145,11 @@ function outcomesOf(scenario: JudgedScenario, index: number, clause: string): Ou
     return [{ index, verdict: scenario.verdict, robustness: null, unit: "" }];
   }
   return scenario.clauses.filter(({ iri }) => iri === clause).map((found) => ({ ...found, index }));
+}
+
+/** Infinite margins are equal. */
+function compare(one: number, other: number): number {
+  return one === other ? 0 : one - other;
 }
 
 function margin({ robustness }: Outcome): number {

@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
+import { accessible } from "./harness/axe.mjs";
 import { execute } from "./harness/models.mjs";
-import { eventually } from "./harness/patience.mjs";
+import { eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
@@ -20,24 +21,77 @@ const step = story("study", (opened) => {
   ({ workbench } = opened);
 }, { prepare: run });
 
-step("a heat map counts what passed, and its cells lead to the replay of the worst", async () => {
+step("a heat map counts what passed, with intervals, and a cell lists its executions, the worst first", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor({ state: "attached" });
   await workbench.command("RobBDD: Show Study…");
   await workbench.pick("Run 1");
   const page = workbench.webview("Study");
   await page.getByRole("heading", { name: "3 hold, 1 violated" }).waitFor();
-  await eventually(async () => assert.deepEqual(await page.locator("td").allTextContents(), ["1/1", "1/1", "1/1", "0/1"]));
+  const cells = page.locator(".map td");
+  await eventually(async () => assert.deepEqual(await cells.allTextContents(), ["1/121–100 %", "1/121–100 %", "1/121–100 %", "0/10–79 %"]));
   await page.getByLabel("What is counted").selectOption({ label: "at-goal" });
-  await page.locator("td", { hasText: /^0\/1worst −/ }).waitFor();
+  await page.locator("td", { hasText: /^0\/10–79 %worst −/ }).waitFor();
   await page.locator(".margins rect.violated").first().waitFor();
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
     await workbench.screenshot(`study-${scheme}`);
   }
-  await page.locator("td button").last().click();
+  await accessible(page, "study");
+  await page.locator(".map td button").last().click();
+  const [listed] = await page.locator(".executions tr:has(td)").all();
+  assert.match(await listed.textContent(), /part = ball, robot = ur10.*✗ violated−36/);
+  await workbench.screenshot("study-executions");
+  await listed.getByRole("button", { name: /^Replay/ }).press("Enter");
   await workbench.page.locator(".tab.active", { hasText: "Replay bin-heights" }).waitFor();
   await workbench.webview("Replay").locator(".row.chosen", { hasText: "at-goal" }).waitFor();
+});
+
+step("a matrix has the verdicts of all clauses in thousands of executions, for the keyboard", async () => {
+  await workbench.openFile(FILE);
+  await workbench.command("RobBDD: Show Matrix of Verdicts…");
+  await workbench.pick("Run 1");
+  const page = workbench.webview("Study");
+  const grid = page.getByRole("grid");
+  await eventually(async () => assert.equal(await grid.getAttribute("aria-rowcount"), "5"));
+  assert.equal(await page.locator(".line .violated").count(), 3, "two clauses of one execution, and the execution");
+  await accessible(page, "matrix");
+  for (const scheme of Object.keys(SCHEMES)) {
+    await workbench.changeScheme(scheme);
+    await workbench.screenshot(`matrix-${scheme}`);
+  }
+  // As after a run of 1,680 scenarios of 40 clauses: scenario n violates clause n modulo 97, if there is one.
+  const shown = await timed(() => page.locator("body").evaluate((body, [rows, columns]) => {
+    const texts = Array.from({ length: columns }, (_, number) => ({ iri: `e:c${number}`, name: `clause-${number}`, role: "then", sentence: "", unit: "m" }));
+    const scenarios = Array.from({ length: rows }, (_, row) => ({
+      variant: "e:v",
+      name: `e:v -- ${row + 1}`,
+      values: { "e:seed": row, "e:robot": row % 2 ? "e:panda" : "e:ur10" },
+      verdict: row % 97 < columns ? "violated" : "holds",
+      judged: texts.map((_, column) => (row % 97 === column ? [column, "violated", -row / 1e4] : [column, "holds", 0.01])),
+    }));
+    window.postMessage({ type: "results", studied: { uri: "file:///none.bdd", run: 1 }, title: "Run 1", results: { texts, scenarios }, show: "matrix" });
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  }, [1680, 40]));
+  await eventually(async () => assert.equal(await grid.getAttribute("aria-rowcount"), "1681"));
+  assert.ok((await page.locator(".cell").count()) < 2500, "only what is in sight is on the page");
+  await grid.focus();
+  await workbench.page.keyboard.press("Control+End");
+  await page.locator(".cell.active[data-row='1679'][data-column='41']").waitFor();
+  await page.locator(".cellwords", { hasText: "clause-39: holds by +10.0 mm · seed = 1679, robot = panda" }).waitFor();
+  await workbench.page.keyboard.press("Control+Home");
+  await workbench.page.keyboard.press("ArrowRight");
+  await workbench.page.keyboard.press("ArrowRight");
+  await workbench.page.keyboard.press("ArrowUp");
+  const sorted = await timed(async () => {
+    await workbench.page.keyboard.press("Enter");
+    await page.locator("[role=columnheader][aria-sort=ascending]", { hasText: "clause-0" }).waitFor();
+  });
+  await page.locator(".line [role=rowheader]", { hasText: "seed = 1649," }).waitFor();
+  await page.getByLabel("Filter by values").fill("robot = panda");
+  await page.locator(".count", { hasText: "840 of 1680 shown" }).waitFor();
+  console.log(`1,680 executions of 40 clauses: shown after ${Math.round(shown)} ms, sorted after ${Math.round(sorted)} ms`);
+  await workbench.screenshot("matrix-thousands");
 });
 
 step("the history of a clause lists its runs, and two of them are compared", async () => {
@@ -49,21 +103,35 @@ step("the history of a clause lists its runs, and two of them are compared", asy
   const history = workbench.webview("History of at-goal");
   await history.getByRole("heading", { name: "at-goal: holds in 0 of 2 runs" }).waitFor();
   await eventually(async () => assert.deepEqual(await history.locator("td.verdict").allTextContents(), ["✗ 0/1", "✗ 3/4"]));
+  await accessible(history, "history");
+  await noneCut(history);
   await history.locator("tr.stale", { hasText: "the clause has changed since" }).waitFor();
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
     await workbench.screenshot(`history-${scheme}`);
   }
-  await history.getByRole("button", { name: /^Show which executions flipped/ }).click();
+  await history.getByRole("button", { name: /Show which executions flipped/ }).click();
   const comparison = workbench.webview("Run 1 → 2");
   await comparison.getByRole("heading", { name: "Run 1 → run 2: 1 flipped, 0 the same, 3 only in run 1" }).waitFor();
   await comparison.getByText("the model has changed").waitFor();
   await comparison.getByText(/^at-goal ✔ → ✗ \(\+.* → −.*\)/).waitFor();
+  await accessible(comparison, "comparison");
+  await noneCut(comparison);
   await workbench.screenshot("comparison");
   await comparison.getByRole("button", { name: "Replay run 1 and run 2 next to each other" }).click();
   await workbench.page.locator(".tab", { hasText: /Replay bin-heights.*\(run 1\)/ }).waitFor();
   await workbench.page.locator(".tab.active", { hasText: "(run 2)" }).waitFor();
 });
+
+/** Assert that a page in a narrow column shows all of its words. */
+async function noneCut(page) {
+  await eventually(async () => {
+    const cut = await page.locator("h1, li, td, th, td button, p").evaluateAll((elements) => {
+      return elements.filter((one) => one.getBoundingClientRect().right > innerWidth + 1).map((one) => one.textContent);
+    });
+    assert.deepEqual(cut, []);
+  });
+}
 
 /**
  * Execute four scenarios, one of which fails: the ball under the suction cup hits the rim of the bin. Then execute one

@@ -1,5 +1,5 @@
 // Messages between the extension and the study page.
-import type { Results } from "./results";
+import type { PackedResults } from "./packed";
 
 /** Selects a stored run. */
 export interface StudiedRun {
@@ -12,8 +12,13 @@ export interface ToStudy {
   readonly type: "results";
   readonly studied: StudiedRun;
   readonly title: string;
-  readonly results: Results;
+  readonly results: PackedResults;
+  /** What to show; undefined for what the page showed last. */
+  readonly show?: StudyPart;
 }
+
+/** A heat map over two variables with the margins, or the matrix of all verdicts. */
+export type StudyPart = "factors" | "matrix";
 
 /** In addition to `{ type: "ready" }`: the number of the scenario to replay, and the clause to select. */
 export interface FromStudy {
@@ -28,4 +33,5 @@ export interface StudyState {
   readonly across: string;
   readonly down: string;
   readonly clause: string;
+  readonly part: StudyPart;
 }

@@ -7,7 +7,8 @@ import { Panel, beside } from "../panel";
 import { chooseRun } from "../replay/choice";
 import type { ReplayView } from "../replay/view";
 import { type StoredRun, isRuns, outcome } from "../runs";
-import type { StudiedRun, ToStudy } from "./messages";
+import type { StudiedRun, StudyPart, ToStudy } from "./messages";
+import { packed } from "./packed";
 import { readResults } from "./results";
 
 const TYPE = "robbdd.study";
@@ -15,6 +16,8 @@ const TYPE = "robbdd.study";
 export class StudyView implements vscode.Disposable {
   /** By the folder of the run. */
   private readonly studies = new Map<string, Panel<ToStudy>>();
+  /** Sends the results to the page again, to show another part; by the folder of the run. */
+  private readonly begins = new Map<string, (part: StudyPart) => void>();
   private readonly serializer: vscode.Disposable;
 
   constructor(
@@ -27,17 +30,18 @@ export class StudyView implements vscode.Disposable {
     });
   }
 
-  /** Show the results of a stored run of a model's project; the user chooses which. */
-  async choose(uri: string): Promise<void> {
+  /** Show the results of a stored run of a model's project; the user chooses which run. */
+  async choose(uri: string, part: StudyPart): Promise<void> {
     if (!(await this.server.ready())) {
       return;
     }
     const run = await chooseRun(this.server, uri, "Study: which run?");
     const open = run === undefined ? undefined : this.studies.get(run.folder);
     if (open !== undefined) {
+      this.begins.get(run?.folder ?? "")?.(part);
       open.view.reveal(undefined, true);
     } else if (run !== undefined) {
-      await this.show(run, uri, () => beside(TYPE, `Study run ${run.run}`));
+      await this.show(run, uri, () => beside(TYPE, `Study run ${run.run}`), part);
     }
   }
 
@@ -62,7 +66,7 @@ export class StudyView implements vscode.Disposable {
     view.dispose();
   }
 
-  private async show(run: StoredRun, uri: string, panel: () => vscode.WebviewPanel): Promise<boolean> {
+  private async show(run: StoredRun, uri: string, panel: () => vscode.WebviewPanel, part?: StudyPart): Promise<boolean> {
     const file = vscode.Uri.joinPath(vscode.Uri.parse(run.folder), "results.json");
     const results = readResults(await textOf(file));
     if (results === undefined) {
@@ -71,18 +75,34 @@ export class StudyView implements vscode.Disposable {
     }
     const studied: StudiedRun = { uri, run: run.run };
     const title = `Run ${run.run} of ${run.path}: ${outcome(run)}`;
+    const sent = packed(results.scenarios);
+    let first = part;
+    const begin = (show: StudyPart | undefined) => {
+      first = undefined;
+      study.post({ type: "results", studied, title, results: sent, ...(show === undefined ? {} : { show }) });
+    };
     const study: Panel<ToStudy> = new Panel<ToStudy>(
       panel(),
       this.extension,
       "study",
       () => {
-        study.post({ type: "results", studied, title, results });
+        // A page that is loaded again shows what it showed last.
+        begin(first);
       },
       ({ index, clause }) => void this.replays.open({ ...studied, index, clause }),
     );
     this.studies.set(run.folder, study);
+    this.begins.set(run.folder, (show) => {
+      // A hidden page is loaded when it is shown, and asks then.
+      if (study.view.visible) {
+        begin(show);
+      } else {
+        first = show;
+      }
+    });
     study.view.onDidDispose(() => {
       this.studies.delete(run.folder);
+      this.begins.delete(run.folder);
     });
     return true;
   }
