@@ -16,6 +16,8 @@ const shared = {
   target: "node20",
   format: "cjs",
   logLevel: "warning",
+  // Icons are drawings in the page.
+  loader: { ".svg": "text" },
 };
 
 async function writeGrammars() {

@@ -48,7 +48,7 @@ export function activate(context: vscode.ExtensionContext): void {
   const drawings = new SceneView(started, context.extensionUri);
   const chooser = new RunOptionsChooser(context.workspaceState);
   const tests = new TestingView(started, runs, chooser);
-  const replays = new ReplayView(started, context.extensionUri);
+  const replays = new ReplayView(started, context.extensionUri, context.extension.id);
   const scenes = new PausedScene(context.extensionUri);
   const studies = new StudyView(started, replays, context.extensionUri);
   const comparisons = new ComparisonView(started, replays, context.extensionUri);
@@ -72,6 +72,9 @@ export function activate(context: vscode.ExtensionContext): void {
     ...registerCommands(started, runs, chooser, { previews, graphs, drawings, replays, studies, histories, comparisons, tests, scenes }, log, () =>
       reportIssue({ extension: version, server: running }),
     ),
+    vscode.window.registerUriHandler({
+      handleUri: (uri) => replays.openLink(uri.toString(true)),
+    }),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restartIfMoved();

@@ -1,14 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Clause, type PackedArray, type Part, ageOf, firstClause, isTrace } from "../src/panels/replay/answer";
+import { type Clause, type PackedArray, type Part, ageOf, firstClause, isTrace, titleOf } from "../src/panels/replay/answer";
 import { clauseOf, recordingOf } from "../src/panels/replay/request";
 import { isRuns, outcome } from "../src/panels/runs";
 import { signed } from "../src/quantity";
+import { followable } from "../webviews/replay/followed";
+import { Pressed } from "../webviews/replay/pressed";
 import { Clock } from "../webviews/replay/clock";
 import { extent, points } from "../webviews/replay/margins";
 import { Motion } from "../webviews/replay/motion";
 import { lanes, scale, ticks } from "../webviews/replay/scale";
-import { apart } from "../webviews/replay/tags";
+import { apart } from "../webviews/stage/tags";
 
 const packed = (values: number[], ...shape: number[]): PackedArray => ({
   type: "float32",
@@ -148,4 +150,35 @@ test("a reader sees which clauses have changed, and when that is unknown", () =>
   assert.match(ageOf([one, { ...one, stale: true }, { ...one, name: "in-hand", stale: true }]), /at-goal, in-hand have changed/);
   assert.match(ageOf([{ ...one, stale: true }]), /at-goal has changed/);
   assert.match(ageOf([{ ...one, stale: null }]), /has errors/);
+});
+
+test("the camera follows tools and moving elements, not links, in words", () => {
+  const body = (name: string) => ({ name, position: [0, 0, 0], orientation: [1, 0, 0, 0] }) as const;
+  const bodies = ["world", "env:ball", "env:table", "env:ur10/wrist", "env:ur10/tool"].map(body);
+  const frames = { times: packed([], 0), bodies: [1, 3, 4], poses: packed([], 0) };
+  assert.deepEqual(followable({ bodies, frames, tools: [{ agent: "env:ur10", body: 4 }] }), [
+    { body: 4, words: "ur10 tool" },
+    { body: 1, words: "ball" },
+  ]);
+  assert.deepEqual(followable({ bodies, frames }), [{ body: 1, words: "ball" }]);
+});
+
+test("forces are those of the picture that is shown, the largest first, and none is invented", () => {
+  const frames = { times: packed([0, 1, 2], 3), bodies: [], poses: packed([], 0) };
+  const force = (other: string, bodies: readonly [number | null, number | null], ...peaks: number[]) => {
+    return { between: ["env:ur10", other], bodies, peaks: packed(peaks, 3) };
+  };
+  const forces = [force("env:ball", [4, 1], 0, 1.5, 2), force("env:bin", [4, 2], 0, 0, 31.25), force("floor", [4, null], 0.01, 0, 3)];
+  const pressed = new Pressed({ frames, forces });
+  assert.deepEqual(pressed.at(0.5), []);
+  assert.deepEqual(pressed.at(1.5), [{ between: [4, 1], words: "ur10 – ball 1.50 N" }]);
+  assert.deepEqual(pressed.at(9).map(({ words }) => words), ["ur10 – bin 31.3 N", "ur10 – floor 3.00 N", "ur10 – ball 2.00 N"]);
+  assert.deepEqual(pressed.at(9)[1]?.between, [4, 4]);
+  assert.ok(pressed.any);
+  assert.ok(!new Pressed({ frames, forces: null }).any);
+  assert.deepEqual(new Pressed({ frames }).at(1), []);
+});
+
+test("a scenario is called by its name and number", () => {
+  assert.deepEqual(["crit:bin-heights -- 12", "bin -- heights", "crit:alone"].map((name) => titleOf({ name })), ["bin-heights 12", "bin -- heights", "alone"]);
 });

@@ -70,13 +70,17 @@ export class Uri {
 
 /** A panel with a page, as the extension leaves it. */
 export class WebviewPanel {
+  /** The messages to the page. */
+  readonly posted: unknown[] = [];
+  /** Fires the messages of the page. */
+  readonly fromPage = new EventEmitter();
   readonly webview = {
     html: "",
     options: {},
     cspSource: "https://*.pages.example",
     asWebviewUri: (uri: Uri) => `https://pages.example${uri.path}`,
-    onDidReceiveMessage: new EventEmitter().event,
-    postMessage: nothing,
+    onDidReceiveMessage: this.fromPage.event,
+    postMessage: (message: unknown) => Promise.resolve(void this.posted.push(message)),
   };
   readonly onDidDispose = new EventEmitter().event;
   iconPath: unknown;
@@ -147,6 +151,11 @@ class Editor {
   /** The texts of new documents. */
   readonly texts: string[] = [];
   readonly files = new Map<string, string>();
+  /** Addresses at which there is no file. */
+  readonly missing = new Set<string>();
+  clipboard = "";
+  /** Opens links to the extension. */
+  uriHandler: { readonly handleUri: (uri: { readonly toString: () => string }) => unknown } | undefined;
   /** What fills the Testing view. */
   controller: { resolveHandler: (item: undefined) => Promise<void> } = { resolveHandler: nothing };
   readonly opened = new EventEmitter();
@@ -163,6 +172,8 @@ class Editor {
     for (const event of [this.opened, this.saved, this.trusted]) {
       event.dispose();
     }
+    this.missing.clear();
+    this.clipboard = "";
     this.panels.length = 0;
     this.problems.length = 0;
     this.messages.length = 0;
@@ -199,11 +210,15 @@ export const workspace = {
   textDocuments: [],
   workspaceFolders: undefined as readonly { readonly uri: Uri }[] | undefined,
   fs: {
-    stat: nothing,
+    stat: (uri: Uri) => (editor.missing.has(uri.toString()) ? Promise.reject(new Error("FileNotFound")) : nothing()),
+    writeFile: (uri: Uri, content: Uint8Array) => Promise.resolve(void editor.files.set(uri.toString(), Buffer.from(content).toString("base64"))),
     readFile: (uri: Uri) => Promise.resolve(new TextEncoder().encode(editor.files.get(uri.toString()) ?? "")),
   },
-  asRelativePath: String,
-  getWorkspaceFolder: (uri: Uri) => {
+  asRelativePath: (uri: Uri): string => {
+    const folder = workspace.getWorkspaceFolder(uri);
+    return folder === undefined ? String(uri) : decodeURIComponent(uri.toString().slice(folder.uri.toString().length + 1));
+  },
+  getWorkspaceFolder: (uri: Uri): { readonly uri: Uri } | undefined => {
     return workspace.workspaceFolders?.find((folder) => uri.toString().startsWith(`${folder.uri.toString()}/`));
   },
   getConfiguration: () => ({ get: (name: string, otherwise?: unknown) => editor.settings[name] ?? otherwise }),
@@ -242,6 +257,11 @@ export const window = {
     editor.serializers.set(type, serializer);
     return ended;
   },
+  registerUriHandler: (handler: { readonly handleUri: (uri: { readonly toString: () => string }) => unknown }) => {
+    editor.uriHandler = handler;
+    return ended;
+  },
+  showSaveDialog: ({ defaultUri }: { readonly defaultUri?: Uri }) => Promise.resolve(defaultUri),
   showErrorMessage: report,
   showWarningMessage: report,
   showInformationMessage: (message: string) => {
@@ -322,7 +342,15 @@ export const debug = {
 
 export const languages = { registerEvaluatableExpressionProvider: () => ended, getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
 export const version = "1.91.0";
-export const env = { remoteName: undefined, appName: "Editor" };
+export const env = {
+  remoteName: undefined,
+  appName: "Editor",
+  uriScheme: "vscode",
+  clipboard: {
+    readText: () => Promise.resolve(editor.clipboard),
+    writeText: (text: string) => Promise.resolve(void (editor.clipboard = text)),
+  },
+};
 export const extensions = { getExtension: () => undefined };
 
 export const tests = {

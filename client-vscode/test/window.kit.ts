@@ -36,7 +36,7 @@ export function openWindow({ trusted = true }: { readonly trusted?: boolean } = 
       update: (key: string, value: unknown) => Promise.resolve(void memory.set(key, value)),
     },
     globalStorageUri: Uri.file(join(storage, "storage")),
-    extension: { packageJSON: { version: "1.0" } },
+    extension: { id: "robbdd.robbdd-workbench", packageJSON: { version: "1.0" } },
     extensionUri: Uri.file("/extension"),
     asAbsolutePath: (path: string) => join("/extension", path),
     subscriptions: [],

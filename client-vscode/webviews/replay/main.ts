@@ -1,71 +1,92 @@
 // The replay page: the scene, the controls, the timeline; all show the same time.
 import "./replay.css";
-import { type Trace, ageOf, firstClause } from "../../src/panels/replay/answer";
+import { type Trace, ageOf, firstClause, titleOf } from "../../src/panels/replay/answer";
 import type { FromReplay, Recording, ReplayState, ToReplay } from "../../src/panels/replay/messages";
-import { button, element } from "../shared/elements";
+import { announcer, element } from "../shared/elements";
 import { connect } from "../shared/host";
-import { Clock, SPEEDS } from "./clock";
-import { Stage } from "./stage";
-import { type Timeline, timeline } from "./timeline";
+import { Stage } from "../stage/stage";
+import { Clock } from "./clock";
+import { Controls, type Toggle } from "./controls";
+import { type Followed, followable } from "./followed";
+import { Motion } from "./motion";
+import { captioned, copied, encoded } from "./picture";
+import { Pressed } from "./pressed";
+import { type Timeline, marginWords, timeline } from "./timeline";
 
 const STEP = 0.05;
 const LEAP = 0.5;
+/** ms */
+const BRIEFLY = 4000;
+const NO_FORCES = "This execution has no recorded contact forces.";
+
+/** What is shown of a trace. */
+interface Shown {
+  readonly trace: Trace;
+  readonly recording: Recording;
+  readonly motion: Motion;
+  readonly forces: Pressed;
+  readonly line: Timeline;
+  readonly bodies: readonly Followed[];
+}
 
 const host = connect<FromReplay, ReplayState>((message) => {
   receive(message as ToReplay);
 });
 const status = element("div", { role: "status" });
 const title = element("span", { class: "title" });
-const readout = element("output", { class: "readout" });
-const place = element("div", { class: "place" });
+const said = element("span", { class: "said" });
+const place = element("main", { class: "place" });
+const spoken = announcer();
 const clock = new Clock(0, update);
-const play = button("▶", "Play or pause (Space)", () => {
-  clock.toggle();
+const controls = new Controls({
+  play: () => {
+    clock.toggle();
+  },
+  speed: (factor) => {
+    clock.speed = factor;
+  },
+  seek: scrub,
+  violation: toViolation,
+  home: look,
+  toggle,
+  follow,
+  picture: () => void takePicture(),
+  link: () => {
+    host.post({ type: "link", time: clock.time, clause: chosen });
+  },
 });
-const violation = button("To the violation", "Jump to the violation of the selected clause, else of the first one (V)", toViolation);
-const home = button("⌂", "Show the whole scene (H)", () => stage?.look());
-const names = button("Aa", "Show or hide the names in the scene (N)", toggleNames);
-const slider = element("input", { type: "range", min: 0, step: 0.01, "aria-label": "Time", class: "slider" });
-const speed = element("select", { title: "Speed", "aria-label": "Speed" });
 
+let shown: Shown | undefined;
 let stage: Stage | undefined;
-let line: Timeline | undefined;
-let trace: Trace | undefined;
-let recording: Recording | undefined;
 let chosen = -1;
-let named = true;
+let followed: number | undefined;
+const visible: Record<Toggle, boolean> = { named: host.kept?.named ?? true, framed: host.kept?.framed ?? false, pressed: host.kept?.pressed ?? false };
 /** Time of the last drawn frame during playback, ms. */
 let last: number | undefined;
 
-speed.append(...SPEEDS.map((factor) => element("option", { value: factor }, `${factor} ×`)));
-speed.value = "1";
-speed.addEventListener("change", () => {
-  clock.speed = Number(speed.value);
-});
-slider.addEventListener("input", () => {
-  clock.pause();
-  clock.seek(Number(slider.value));
-});
-names.setAttribute("aria-pressed", "true");
-document.body.append(
-  element("header", { role: "toolbar", "aria-label": "Replay" }, play, speed, violation, readout, slider, home, names),
-  element("div", { class: "heading" }, title),
-  status,
-  place,
-);
+document.body.append(controls.root, element("div", { class: "heading" }, title, said), status, place, spoken.root);
 new ResizeObserver(() => {
-  line?.draw(chosen);
-  line?.mark(clock.time);
+  shown?.line.draw(chosen);
+  shown?.line.mark(clock.time);
 }).observe(document.body);
 
 function receive(message: ToReplay): void {
-  if (message.type === "age") {
-    tell(message.text);
-  } else if (message.type === "clause") {
-    choose(firstClause(trace?.clauses ?? [], message.clause));
-    toViolation();
-  } else {
-    begin(message.trace, message.recording, message.clause, message.time);
+  switch (message.type) {
+    case "age":
+      tell(message.text);
+      break;
+    case "clause":
+      choose(firstClause(shown?.trace.clauses ?? [], message.clause));
+      toViolation();
+      break;
+    case "time":
+      scrub(message.time);
+      break;
+    case "said":
+      tellBriefly(message.words);
+      break;
+    case "trace":
+      begin(message);
   }
 }
 
@@ -74,51 +95,61 @@ function tell(problem: string): void {
   status.classList.toggle("problem", problem !== "");
 }
 
-/** Show a trace: in the page's kept state, else at the most relevant clause. */
-function begin(shown: Trace, of: Recording, clause: string | undefined, time: number | undefined): void {
+/** Say something next to the title for some seconds. */
+function tellBriefly(words: string): void {
+  spoken.say(words);
+  said.textContent = words;
+  setTimeout(() => {
+    said.textContent = "";
+  }, BRIEFLY);
+}
+
+/** Show a trace: at the requested time, else in the page's kept state, else at the most relevant clause. */
+function begin({ trace, recording, clause, time }: ToReplay & { readonly type: "trace" }): void {
   const kept = host.kept;
-  stage?.dispose();
-  trace = shown;
-  recording = of;
-  clock.duration = shown.duration;
-  slider.max = String(shown.duration);
-  title.textContent = [shown.scenario.name.replace(/^[^:]*:/, ""), shown.scenario.values].filter(Boolean).join(" · ");
+  clock.duration = trace.duration;
+  title.textContent = [titleOf(trace.scenario), trace.scenario.values].filter(Boolean).join(" · ");
   title.title = title.textContent;
-  tell(ageOf(shown.clauses));
-  line = timeline(shown, { seek: scrub, choose, open });
+  tell(ageOf(trace.clauses));
+  const line = timeline(trace, { seek: scrub, choose, open });
+  shown = { trace, recording, line, motion: new Motion(trace), forces: new Pressed(trace), bodies: followable(trace) };
   place.replaceChildren(scene(shown), line.root);
-  if (kept?.clause !== undefined && kept.time !== undefined && clause === undefined) {
-    choose(kept.clause);
-    clock.seek(time ?? kept.time);
-    if (kept.camera !== undefined && stage !== undefined) {
-      stage.view = kept.camera;
-    }
-    return;
+  const restored = kept?.clause !== undefined && kept.time !== undefined && clause === undefined;
+  choose(restored ? (kept.clause ?? -1) : firstClause(trace.clauses, clause));
+  clock.seek(time ?? (restored ? kept.time : violated()) ?? 0);
+  if (stage !== undefined && restored && kept.camera !== undefined) {
+    stage.view = kept.camera;
   }
-  choose(firstClause(shown.clauses, clause));
-  clock.seek(time ?? violated() ?? 0);
+  controls.offer(shown.bodies, kept?.follow);
+  follow(shown.bodies.find(({ words }) => words === kept?.follow)?.body, restored);
 }
 
 /** The scene, or a message why there is none. */
-function scene(shown: Trace): HTMLElement {
+function scene({ trace, forces }: Shown): HTMLElement {
+  stage?.dispose();
   try {
-    stage = new Stage(shown, keep);
-    stage.named = named;
+    stage = new Stage(trace, keep);
+    stage.named = visible.named;
+    stage.framed = visible.framed;
+    controls.mark("named", visible.named);
+    controls.mark("framed", visible.framed);
+    controls.mark("pressed", visible.pressed && forces.any, forces.any ? undefined : NO_FORCES);
     return stage.root;
   } catch (error) {
     console.warn(error);
-    home.disabled = names.disabled = true;
+    controls.withoutScene();
     const reason = "This window cannot draw in 3D (WebGL is missing or disabled). The timeline works.";
     return element("p", { class: "nothing" }, reason);
   }
 }
 
 function update(): void {
-  stage?.show(clock.time);
-  line?.mark(clock.time);
-  slider.value = String(clock.time);
-  readout.textContent = `${clock.time.toFixed(2)} / ${clock.duration.toFixed(2)} s`;
-  play.textContent = clock.playing ? "⏸" : "▶";
+  if (shown !== undefined && stage !== undefined) {
+    shown.motion.at(clock.time, (body, pose) => stage?.place(body, pose));
+    stage.press(visible.pressed ? shown.forces.at(clock.time) : []);
+  }
+  shown?.line.mark(clock.time);
+  controls.show(clock);
   if (clock.playing) {
     requestAnimationFrame(tick);
   } else {
@@ -143,9 +174,9 @@ function scrub(time: number): void {
 
 function choose(clause: number): void {
   chosen = clause;
-  line?.draw(chosen);
-  line?.mark(clock.time);
-  violation.disabled = violated() === undefined;
+  shown?.line.draw(chosen);
+  shown?.line.mark(clock.time);
+  controls.violated = violated() !== undefined;
   keep();
 }
 
@@ -155,7 +186,7 @@ function open(clause: number): void {
 
 /** The instant of the violation of the selected clause, else of the first violated one, s. */
 function violated(): number | undefined {
-  const clauses = trace?.clauses ?? [];
+  const clauses = shown?.trace.clauses ?? [];
   const found = [clauses[chosen], ...clauses].find((clause) => clause?.verdict === "violated" && clause.at !== null);
   return found?.at ?? undefined;
 }
@@ -164,21 +195,65 @@ function toViolation(): void {
   const time = violated();
   if (time !== undefined) {
     scrub(time);
+    spoken.say(`${time.toFixed(2)} seconds`);
   }
 }
 
-function toggleNames(): void {
-  named = !named;
-  names.setAttribute("aria-pressed", String(named));
-  if (stage !== undefined) {
-    stage.named = named;
+/** Show the whole scene; nothing is followed then. */
+function look(): void {
+  follow(undefined);
+  stage?.look();
+}
+
+/** Follow a body; `inPlace` leaves the camera where it is. */
+function follow(body: number | undefined, inPlace = false): void {
+  followed = body;
+  const view = stage?.view;
+  stage?.follow(body);
+  if (inPlace && stage !== undefined && view !== undefined) {
+    stage.view = view;
+  }
+  controls.follow(body);
+  keep();
+}
+
+/** Follow the first tool, or nothing if something is followed. */
+function followTool(): void {
+  follow(followed === undefined ? shown?.bodies[0]?.body : undefined);
+}
+
+function toggle(what: Toggle): void {
+  if (stage === undefined || (what === "pressed" && shown?.forces.any !== true)) {
+    return;
+  }
+  visible[what] = !visible[what];
+  controls.mark(what, visible[what]);
+  stage.named = visible.named;
+  stage.framed = visible.framed;
+  update();
+}
+
+/** Copy the scene with its title, the time and the selected clause; let the user save it where that is not possible. */
+async function takePicture(): Promise<void> {
+  if (stage === undefined || shown === undefined) {
+    return;
+  }
+  const clause = shown.trace.clauses[chosen];
+  const moment = `${title.textContent} · ${clock.time.toFixed(2)} s of run ${shown.trace.run}`;
+  const words = [moment, ...(clause === undefined ? [] : [`${clause.sentence}: ${marginWords(clause)}`])];
+  const picture = captioned(stage.picture(), words, window.devicePixelRatio);
+  if (await copied(picture)) {
+    tellBriefly("Picture copied.");
+  } else {
+    host.post({ type: "picture", data: encoded(picture) });
   }
 }
 
 function keep(): void {
-  if (recording !== undefined) {
+  if (shown !== undefined) {
+    const words = shown.bodies.find(({ body }) => body === followed)?.words;
     const camera = stage === undefined ? {} : { camera: stage.view };
-    host.keep({ recording, time: clock.time, clause: chosen, ...camera });
+    host.keep({ recording: shown.recording, time: clock.time, clause: chosen, ...visible, ...(words === undefined ? {} : { follow: words }), ...camera });
   }
 }
 
@@ -199,8 +274,21 @@ const KEYS: Readonly<Record<string, (event: KeyboardEvent) => void>> = {
     scrub(clock.duration);
   },
   v: toViolation,
-  h: () => stage?.look(),
-  n: toggleNames,
+  h: look,
+  f: followTool,
+  n: () => {
+    toggle("named");
+  },
+  a: () => {
+    toggle("framed");
+  },
+  o: () => {
+    toggle("pressed");
+  },
+  c: () => void takePicture(),
+  l: () => {
+    host.post({ type: "link", time: clock.time, clause: chosen });
+  },
 };
 
 document.addEventListener("keydown", (event) => {

@@ -1,6 +1,6 @@
 // Poses of the moving bodies at any time of a trace.
 import type { Trace } from "../../src/panels/replay/answer";
-import { floats } from "./arrays";
+import { floats } from "../stage/arrays";
 
 /** Length of a pose: x, y, z (m), then w, x, y, z. */
 const POSE = 7;

@@ -1,7 +1,7 @@
 // The timeline: events, the window of each clause in the colour of its verdict, the margin of the selected one.
 import { type Clause, type Trace, local } from "../../src/panels/replay/answer";
 import { signed } from "../../src/quantity";
-import { button, drawn, element } from "../shared/elements";
+import { drawn, element, iconButton } from "../shared/elements";
 import { marginPlot } from "./plot";
 import { type Scale, lanes, scale, ticks } from "./scale";
 
@@ -68,6 +68,15 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
     labels.style.setProperty("--head", `${head}px`);
   };
 
+  labels.addEventListener("keydown", (event) => {
+    const names = [...labels.querySelectorAll<HTMLElement>(".name")];
+    const at = names.findIndex((one) => one === document.activeElement);
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (at >= 0 && step !== undefined) {
+      names[at + step]?.focus();
+      event.preventDefault();
+    }
+  });
   dragged(tracks, (x) => {
     actions.seek(along.back(x));
   });
@@ -117,13 +126,13 @@ function windows(clause: Clause, along: Scale, top: number, chosen: boolean, wid
 
 function row(clause: Clause, index: number, chosen: boolean, { choose, open }: Actions): HTMLElement {
   const { verdict, name, role, sentence, reason, vacuous } = clause;
-  const title = [`${role}: ${sentence}`, margin(clause), reason, vacuous].filter((text) => text !== "").join("\n");
+  const title = [`${role}: ${sentence}`, marginWords(clause), reason, vacuous].filter((text) => text !== "").join("\n");
   const label = element("button", { type: "button", class: "name", title, "aria-pressed": String(chosen) });
-  label.append(element("span", { class: `sign ${verdict}`, "aria-label": verdict }, SIGNS[verdict]), shown(name, sentence));
+  label.append(element("span", { class: `sign ${verdict}`, role: "img", "aria-label": verdict }, SIGNS[verdict]), shown(name, sentence));
   label.addEventListener("click", () => {
     choose(index);
   });
-  const source = button("↗", `Go to the text of ${name}`, () => {
+  const source = iconButton("source", `Go to the text of ${name}`, () => {
     open(index);
   });
   source.disabled = clause.source === null;
@@ -140,12 +149,13 @@ function caption(clause: Clause | undefined): HTMLElement {
   if (clause === undefined) {
     return element("div", { class: "caption" });
   }
-  const details = [margin(clause), clause.reason, clause.vacuous, clause.stale === true ? EDITED : ""].filter((text) => text !== "");
+  const details = [marginWords(clause), clause.reason, clause.vacuous, clause.stale === true ? EDITED : ""].filter((text) => text !== "");
   const list = details.map((text) => element("p", {}, text));
   return element("div", { class: "caption" }, element("p", { class: "sentence" }, clause.sentence), ...list);
 }
 
-function margin({ verdict, robustness, unit, at }: Clause): string {
+/** "violated by −36.1 mm at 6.94 s" */
+export function marginWords({ verdict, robustness, unit, at }: Clause): string {
   const by = robustness === null || unit === "" ? "" : ` by ${signed(robustness, unit)}`;
   return `${verdict}${by}${at === null ? "" : ` at ${at.toFixed(2)} s`}`;
 }

@@ -2,7 +2,7 @@
 import "./scene.css";
 import { type DrawnScene, notes, still } from "../../src/panels/scene/answer";
 import type { FromScene, SceneState, ToScene } from "../../src/panels/scene/messages";
-import { Stage } from "../replay/stage";
+import { Stage } from "../stage/stage";
 import { button, element } from "../shared/elements";
 import { connect } from "../shared/host";
 

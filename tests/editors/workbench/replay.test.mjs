@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { describe } from "node:test";
+import { accessible } from "./harness/axe.mjs";
 import { execute } from "./harness/models.mjs";
 import { eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
@@ -62,10 +63,10 @@ describe("with three dimensions", () => {
     await eventually(async () => assert.equal(await time(), 0));
     const play = page.getByRole("button", { name: "Play or pause" });
     await page.locator(".stage").press("Space");
-    await play.filter({ hasText: "⏸" }).waitFor();
+    await play.locator("[data-icon=pause]").waitFor();
     await page.locator(".readout").filter({ hasText: /^0\.[2-9]|^[1-9]/ }).waitFor();
     await page.locator(".stage").press("Space");
-    await play.filter({ hasText: "▶" }).waitFor();
+    await play.locator("[data-icon=play]").waitFor();
     const stopped = await time();
     await page.locator(".row .name").first().press("ArrowRight");
     await eventually(async () => assert.ok((await time()) > stopped));
@@ -82,6 +83,65 @@ describe("with three dimensions", () => {
     const end = await place();
     await page.locator(".stage").press("Home");
     await eventually(async () => assert.notEqual(await place(), end));
+  });
+
+  step("the camera follows the tool", async () => {
+    const follow = page.getByLabel("Follow with the camera");
+    await page.locator(".stage").press("Home");
+    await follow.selectOption({ label: "Follow ur10 tool" });
+    await page.getByRole("button", { name: /^Coordinate frames/ }).click();
+    const tool = page.locator(".label.frame", { hasText: "ur10 tool" });
+    const goal = page.locator(".label", { hasText: "left_ws" });
+    await drawn();
+    const [still, before] = [await tool.getAttribute("style"), await goal.getAttribute("style")];
+    await page.locator(".stage").press("End");
+    await drawn();
+    // Labels give way to others, but along the vertical only.
+    const left = (style) => Math.round(Number.parseFloat(/left: ([^p]*)px/.exec(style)[1]));
+    assert.ok(Math.abs(left(await tool.getAttribute("style")) - left(still)) <= 1, "the tool stays where it is in the picture");
+    assert.notEqual(left(await goal.getAttribute("style")), left(before), "and the scene moves");
+    await workbench.screenshot("replay-followed");
+    await page.locator(".stage").press("h");
+    assert.equal(await follow.inputValue(), "");
+  });
+
+  step("contact forces are shown in words", async () => {
+    await page.locator(".stage").press("v");
+    await page.getByRole("button", { name: /^Contact forces/ }).click();
+    // At the violation, the ball has left the cup. In between, the cup holds it.
+    await page.locator(".slider").fill("4");
+    await page.locator(".label.force", { hasText: /^ur10 – ball [\d.]+ N$/ }).waitFor();
+    await workbench.screenshot("replay-forces");
+    await page.locator(".stage").press("o");
+    await page.locator(".label.force").waitFor({ state: "detached" });
+  });
+
+  step("a picture of the moment and a link to it are copied, and the link leads back", async () => {
+    await workbench.page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.getByRole("button", { name: /^Copy a picture/ }).click();
+    await page.locator(".said", { hasText: "Picture copied." }).waitFor();
+    const types = await workbench.page.evaluate(async () => (await navigator.clipboard.read()).flatMap((item) => item.types));
+    assert.deepEqual(types, ["image/png"]);
+    await page.locator(".slider").fill("2.5");
+    await page.getByRole("button", { name: /^Copy a link/ }).click();
+    await page.locator(".said", { hasText: "Link copied." }).waitFor();
+    await page.locator(".stage").press("Home");
+    await workbench.command("RobBDD: Open Link to a Moment…");
+    await workbench.page.locator(".quick-input-widget", { hasText: "Paste a link that was copied" }).waitFor();
+    await workbench.acceptInput();
+    await eventually(async () => assert.equal(await time(), 2.5));
+  });
+
+  step("axe finds no barrier, the toolbar is one stop with arrow keys, and nothing is read in each frame", async () => {
+    await accessible(page, "replay");
+    assert.deepEqual(await page.locator("[role=toolbar] [tabindex='0']").count(), 1);
+    await page.getByRole("button", { name: "Play or pause" }).focus();
+    await workbench.page.keyboard.press("ArrowRight");
+    assert.equal(await page.locator(":focus").getAttribute("aria-label"), "Speed");
+    await workbench.page.keyboard.press("End");
+    assert.match(await page.locator(":focus").getAttribute("aria-label"), /^Copy a link/);
+    assert.equal(await page.locator(".readout").evaluate((one) => one.closest("output, [aria-live], [role=status]")), null);
+    assert.equal(await page.locator(".stage").getAttribute("role"), "application");
   });
 
   step("clicking the timeline seeks", async () => {

@@ -37,6 +37,16 @@ export interface Workspace {
   readonly half: Triple;
 }
 
+/** Contact force between two elements; the trace has neither its point nor its direction. */
+export interface ContactForce {
+  /** CURIEs, an agent first. */
+  readonly between: readonly string[];
+  /** Their bodies; null without one. */
+  readonly bodies: readonly [number | null, number | null];
+  /** The largest force since the previous frame, N. */
+  readonly peaks: PackedArray;
+}
+
 export interface Part {
   readonly start: number | null;
   readonly end: number | null;
@@ -73,6 +83,7 @@ export interface Scenario {
   readonly variant: string;
   readonly variation: number;
   readonly repetition: number;
+  readonly seed?: number;
   readonly verdict: Verdict;
 }
 
@@ -92,6 +103,10 @@ export interface Trace {
   readonly bodies: readonly Body[];
   readonly frames: { readonly times: PackedArray; readonly bodies: readonly number[]; readonly poses: PackedArray };
   readonly workspaces: readonly Workspace[];
+  /** The bodies with the frames of the agents' tools; undefined from older servers. */
+  readonly tools?: readonly { readonly agent: string; readonly body: number }[];
+  /** null: none are recorded. */
+  readonly forces?: readonly ContactForce[] | null;
   readonly events: readonly RunEvent[];
   readonly clauses: readonly Clause[];
 }
@@ -116,6 +131,11 @@ export function isTrace(value: unknown): value is Trace {
 /** The local part of a name, after its prefix. */
 export function local(name: string): string {
   return name.replace(/^[^:]*:/, "");
+}
+
+/** The name of a scenario without prefix: "crit:bin-heights -- 12" is "bin-heights 12". */
+export function titleOf({ name }: Pick<Scenario, "name">): string {
+  return local(name).replace(/ -- (?=\d+$)/, " ");
 }
 
 /** Remark on changes of the model's text since a trace was recorded; empty if there are none. */

@@ -1,15 +1,25 @@
 // Panels of recorded executions: the data is requested from the server and played in the page.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
+import { complain, inform } from "../../notices";
 import { isRecord } from "../../values";
 import { Panel, beside } from "../panel";
 import { reveal } from "../reveal";
-import { type Trace, ageOf, isTrace, local } from "./answer";
+import { type Trace, ageOf, isTrace, titleOf } from "./answer";
 import { chooseRecording } from "./choice";
+import { isExecution, momentIn } from "./link";
 import type { Recording, ToReplay } from "./messages";
 import { clauseOf, recordingOf } from "./request";
+import { askLink, copyLink, modelOf, savePicture } from "./sharing";
 
 const TYPE = "robbdd.replay";
+
+/** What to show first; undefined for what is most relevant. */
+interface Start {
+  readonly clause?: string | undefined;
+  /** s */
+  readonly time?: number;
+}
 
 export class ReplayView implements vscode.Disposable {
   /** By execution. */
@@ -19,6 +29,8 @@ export class ReplayView implements vscode.Disposable {
   constructor(
     private readonly server: Server,
     private readonly extension: vscode.Uri,
+    /** Of the extension, for links to it. */
+    private readonly id: string,
   ) {
     this.serializer = vscode.window.registerWebviewPanelSerializer(TYPE, {
       deserializeWebviewPanel: async (view, state: unknown) => {
@@ -47,16 +59,51 @@ export class ReplayView implements vscode.Disposable {
     if (!isTrace(trace)) {
       return;
     }
-    const clause = clauseOf(target);
+    this.show(trace, recording, { clause: clauseOf(target) }, column);
+  }
+
+  /** Show the moment that a link names, of the user or of a stranger; without a link, let the user paste one. */
+  async openLink(link: string | undefined): Promise<void> {
+    const text = link ?? (await askLink());
+    const moment = text === undefined ? undefined : momentIn(text);
+    if (moment === undefined) {
+      if (text !== undefined) {
+        complain("This is no link to a replay.");
+      }
+      return;
+    }
+    const model = await modelOf(moment);
+    if (model === undefined || !(await this.server.ready())) {
+      return;
+    }
+    const uri = model.toString();
+    const { run, index, variant, variation, repetition, seed, clause, time } = moment;
+    const named = await this.server.request("robbdd/trace", { uri, run, index });
+    // A run with this number may be another one here: the execution decides.
+    const found = isTrace(named) && isExecution(named.scenario, moment) ? named : await this.server.request("robbdd/trace", { uri, variant, variation, repetition });
+    if (!isTrace(found) || !isExecution(found.scenario, moment)) {
+      complain(`This link shows an execution of ${moment.model} (seed ${seed}) that no run stored here has. Run the scenario with this seed, then open the link again.`);
+      return;
+    }
+    if (found !== named) {
+      inform(`Run ${run} is not stored here; run ${found.run} has the same scenario with the same seed.`);
+    }
+    this.show(found, { uri }, { clause, time });
+  }
+
+  private show(trace: Trace, recording: Recording, start: Start, column?: vscode.ViewColumn): void {
     const open = this.replays.get(keyOf(trace));
     if (open === undefined) {
-      this.adopt(beside(TYPE, titleOf(trace), column), exactly(recording, trace), trace, clause);
-    } else {
-      open.panel.view.reveal(column, true);
-      open.panel.post({ type: "age", text: ageOf(trace.clauses) });
-      if (clause !== undefined) {
-        open.panel.post({ type: "clause", clause });
-      }
+      this.adopt(beside(TYPE, panelTitle(trace), column), exactly(recording, trace), trace, start);
+      return;
+    }
+    open.panel.view.reveal(column, true);
+    open.panel.post({ type: "age", text: ageOf(trace.clauses) });
+    if (start.clause !== undefined) {
+      open.panel.post({ type: "clause", clause: start.clause });
+    }
+    if (start.time !== undefined) {
+      open.panel.post({ type: "time", time: start.time });
     }
   }
 
@@ -75,12 +122,12 @@ export class ReplayView implements vscode.Disposable {
       view.dispose();
       return;
     }
-    this.adopt(view, recording, trace, undefined);
+    this.adopt(view, recording, trace, {});
   }
 
-  private adopt(view: vscode.WebviewPanel, recording: Recording, trace: Trace, clause: string | undefined): void {
+  private adopt(view: vscode.WebviewPanel, recording: Recording, trace: Trace, start: Start): void {
     const key = keyOf(trace);
-    this.replays.set(key, new Replay(view, this.extension, recording, trace, clause));
+    this.replays.set(key, new Replay(view, this.extension, this.id, recording, trace, start));
     view.onDidDispose(() => {
       this.replays.delete(key);
     });
@@ -94,24 +141,37 @@ class Replay {
   constructor(
     view: vscode.WebviewPanel,
     extension: vscode.Uri,
+    id: string,
     recording: Recording,
     private readonly trace: Trace,
-    clause: string | undefined,
+    { clause, time }: Start,
   ) {
-    let wanted = clause;
+    let start = { ...(clause === undefined ? {} : { clause }), ...(time === undefined ? {} : { time }) };
     this.panel = new Panel<ToReplay>(
       view,
       extension,
       "replay",
       () => {
-        this.panel.post({ type: "trace", recording, trace, ...(wanted === undefined ? {} : { clause: wanted }) });
+        this.panel.post({ type: "trace", recording, trace, ...start });
         // A restored page shows its last state.
-        wanted = undefined;
+        start = {};
       },
-      ({ clause: number }) => {
-        this.show(number);
+      (message) => {
+        if (message["type"] === "open") {
+          this.show(message["clause"]);
+        } else if (message["type"] === "link") {
+          void this.copyLink(recording.uri, id, message);
+        } else if (message["type"] === "picture" && typeof message["data"] === "string") {
+          void savePicture(message["data"], titleOf(trace.scenario));
+        }
       },
     );
+  }
+
+  private async copyLink(uri: string, id: string, { time, clause }: Record<string, unknown>): Promise<void> {
+    if (typeof time === "number" && typeof clause === "number") {
+      this.panel.post({ type: "said", words: await copyLink(this.trace, uri, id, time, clause) });
+    }
   }
 
   private show(clause: unknown): void {
@@ -126,8 +186,8 @@ function keyOf({ folder, scenario }: Trace): string {
   return `${folder} ${scenario.index}`;
 }
 
-function titleOf({ run, scenario }: Trace): string {
-  return `Replay ${local(scenario.name)}${run > 0 ? ` (run ${run})` : ""}`;
+function panelTitle({ run, scenario }: Trace): string {
+  return `Replay ${titleOf(scenario)}${run > 0 ? ` (run ${run})` : ""}`;
 }
 
 /** The server's choice, so that a restored panel shows the same. */
