@@ -2,6 +2,7 @@
 import "./comparison.css";
 import { type Change, type Comparison, type Side, changeWords, sign, summaryOf, totalsWords } from "../../src/panels/comparison/answer";
 import type { ComparisonState, FromComparison, ToComparison } from "../../src/panels/comparison/messages";
+import { titleOf } from "../../src/panels/replay/answer";
 import { outcome } from "../../src/panels/runs";
 import { button, element } from "../shared/elements";
 import { connect } from "../shared/host";
@@ -37,9 +38,9 @@ function executions({ before, after, changes }: Comparison): HTMLElement {
   const heads = ["Execution", `Run ${before.run}`, `Run ${after.run}`, "Clauses that flipped", "Replay"];
   const rows = changes.slice(0, MOST).map((change) => {
     const again = change.repetition > 1 ? `, repetition ${change.repetition}` : "";
-    const flips = element("ul", {}, ...change.clauses.map((clause) => element("li", {}, changeWords(clause))));
-    const name = element("td", {}, change.name.replace(/^[^:]*:/, ""), element("div", { class: "remark" }, `${change.values}${again}`));
-    return element("tr", {}, name, verdict(change.before), verdict(change.after), element("td", {}, flips), element("td", {}, replays(change, before.run, after.run)));
+    const flips = change.clauses.length === 0 ? [] : [element("ul", {}, ...change.clauses.map((clause) => element("li", {}, changeWords(clause))))];
+    const name = element("td", {}, titleOf(change), element("div", { class: "remark" }, `${change.values}${again}`));
+    return element("tr", {}, name, verdict(change.before), verdict(change.after), element("td", {}, ...flips), element("td", {}, replays(change, before.run, after.run)));
   });
   const table = stacked(heads, rows);
   return changes.length > MOST ? element("div", {}, table, element("p", {}, `… and ${changes.length - MOST} more`)) : table;

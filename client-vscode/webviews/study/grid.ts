@@ -105,7 +105,9 @@ export class Grid {
 
   private head(column: number, words: string, by: number): HTMLElement {
     const sorted = this.wish.by === by ? (this.wish.descending ? "descending" : "ascending") : "none";
-    const mark = sorted === "none" ? "" : sorted === "ascending" ? " ▲" : " ▼";
+    // Heads of clauses are turned round.
+    const [up, down] = column === 0 ? [" ▲", " ▼"] : [" ▼", " ▲"];
+    const mark = sorted === "none" ? "" : sorted === "ascending" ? up : down;
     const head = this.cell("columnheader", -1, column, words + mark, `Sort by ${words}`);
     head.setAttribute("aria-sort", sorted);
     return head;
