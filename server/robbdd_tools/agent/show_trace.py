@@ -36,11 +36,14 @@ def show(path: Path) -> dict[str, Any]:
     seen = read_views(path, ("/geometry", "/tf"))
     if not seen["/tf"] or not seen["/geometry"]:
         raise UnreadableTrace(f"{path} was stored by an older version and has no shapes: run the scenario again")
-    return shown(seen)
+    return shown(seen, read_trace(path).trace)
 
 
-def shown(seen: Mapping[str, Sequence[tuple[float, Any]]]) -> dict[str, Any]:
-    """Return the views of an execution (time in s and message, by topic) in the form in which they are displayed."""
+def shown(seen: Mapping[str, Sequence[tuple[float, Any]]], trace: Trace | None = None) -> dict[str, Any]:
+    """Return the views of an execution (time in s and message, by topic) in the form in which they are displayed.
+
+    Tools and forces are those of its ``trace``; without one, there are none.
+    """
     transforms = [message["transforms"] for _, message in seen["/tf"]]
     geometry = seen["/geometry"][0][1]
     start = {frame["child_frame_id"]: _pose(frame) for frame in transforms[0]}
@@ -48,9 +51,11 @@ def shown(seen: Mapping[str, Sequence[tuple[float, Any]]]) -> dict[str, Any]:
     moving = [frame["child_frame_id"] for frame in transforms[-1]] if len(transforms) > 1 else []
     every = -(-len(transforms) // FRAMES)
     times = np.array([time for time, _ in seen["/tf"]][::every])
-    trace = read_trace(path).trace
-    rows = np.clip(np.searchsorted(trace.times, times - SAME), 0, len(trace.times) - 1)
-    tools = {agent: poses for agent in trace.grips if np.isfinite(poses := _tool(trace, agent)[rows]).all()}
+    tools: dict[str, FloatArray] = {}
+    rows = np.zeros(0, dtype=np.intp)
+    if trace is not None:
+        rows = np.clip(np.searchsorted(trace.times, times - SAME), 0, len(trace.times) - 1)
+        tools = {agent: poses for agent in trace.grips if np.isfinite(poses := _tool(trace, agent)[rows]).all()}
     bodies = [_body(name, pose) for name, pose in start.items()]
     bodies += [_body(f"{agent}/tool", poses[0].tolist()) for agent, poses in tools.items()]
     numbers |= {agent: len(start) + index for index, agent in enumerate(tools)}
@@ -62,11 +67,14 @@ def shown(seen: Mapping[str, Sequence[tuple[float, Any]]]) -> dict[str, Any]:
             "times": array(times, "float32"),
             "bodies": [numbers[name] for name in (*moving, *tools)],
             "poses": array(
-                np.stack([*np.moveaxis(_poses(transforms[::every], moving), 1, 0), *tools.values()], axis=1), "float32"
+                np.concatenate(
+                    [_poses(transforms[::every], moving), *(poses[:, None] for poses in tools.values())], axis=1
+                ),
+                "float32",
             ),
         },
         "tools": [{"agent": agent, "body": numbers[agent]} for agent in tools],
-        "forces": None if trace.log else _forces(trace, rows, numbers),
+        "forces": None if trace is None or trace.log else _forces(trace, rows, numbers),
         "workspaces": [{**space, "body": numbers.get(space["body"])} for space in geometry["workspaces"]],
     }
 
