@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import HealthCheck, Phase, settings
 
-from fork_kit import fork_server
+from fork_kit import CAN_FORK, INTERPRETERS, fork_server
 
 # Tests share the cores with one another: how long an example takes says nothing about the code. In continuous
 # integration the examples are the same in every run; elsewhere new ones are tried.
@@ -20,8 +20,26 @@ settings.register_profile(
 settings.load_profile("robbdd")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave the long forms of tests to ``make nightly``, which asks for their marker."""
+    if "nightly" in str(config.getoption("markexpr")):
+        return
+    long = [item for item in items if item.get_closest_marker("nightly") is not None]
+    if long:
+        config.hook.pytest_deselected(items=long)
+        items[:] = [item for item in items if item.get_closest_marker("nightly") is None]
+
+
 @pytest.fixture(scope="session")
 def forks() -> Iterator[None]:
     """What ``ROBBDD`` and ``ROBBDD_LSP`` of ``fork_kit`` need."""
     with fork_server():
         yield
+
+
+@pytest.fixture
+def forked_processes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let this process start agents and validation processes as forks."""
+    request.getfixturevalue("forks")
+    if CAN_FORK:
+        monkeypatch.setattr(*INTERPRETERS)

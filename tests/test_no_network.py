@@ -7,7 +7,6 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
@@ -19,11 +18,14 @@ from lsprotocol import types
 from pygls.protocol import default_converter
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
+from fork_kit import ROBBDD, ROBBDD_LSP
 from kit import EXAMPLES, command_names
 from lsp_kit import ASKED, PATIENCE
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.ask.query import BadQuery, run_query
 from robbdd_tools.graph.rdf.serialize import parse
+
+pytestmark = pytest.mark.usefixtures("forks")
 
 SHAPES = """@prefix sh: <http://www.w3.org/ns/shacl#> .
 @prefix owl: <http://www.w3.org/2002/07/owl#> .
@@ -126,12 +128,12 @@ def environment(folder: Path) -> dict[str, str]:
 def test_no_command_contacts_a_server(folder: Path, contacts: tuple[str, list[str]], tmp_path: Path) -> None:
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in COMMANDS:
-        process = [sys.executable, "-P", "-m", "robbdd_tools.cli", *command.split()]
+        process = [*ROBBDD, *command.split()]
         variables, nothing = environment(tmp_path), subprocess.DEVNULL
         done = subprocess.run(process, cwd=folder, env=variables, capture_output=True, encoding="utf-8", stdin=nothing)
         assert contacts[1] == [], command
         assert "Traceback" not in done.stderr, (command, done.stderr)
-    process = [sys.executable, "-P", "-m", "robbdd_tools.cli", "check", "foreign.jsonld", "--allow-host", "127.0.0.1"]
+    process = [*ROBBDD, "check", "foreign.jsonld", "--allow-host", "127.0.0.1"]
     subprocess.run(process, cwd=folder, env=environment(tmp_path), capture_output=True)
     assert contacts[1] == ["/c.jsonld"], "the server counts"
 
@@ -145,8 +147,7 @@ async def test_no_request_contacts_a_server(
     for method in ASKED:
         # In place of what pytest-lsp may do by itself; pygls leaves the type of its table open.
         client.protocol.fm.features[method] = _ignore  # pyright: ignore[reportUnknownMemberType]
-    words = (sys.executable, "-P", "-m", "robbdd_tools.lsp.main", "--stdio")
-    await cast(Any, client).start_io(*words, env=environment(tmp_path))
+    await cast(Any, client).start_io(*ROBBDD_LSP, "--stdio", env=environment(tmp_path))
     capabilities = client_capabilities("visual-studio-code")
     assert capabilities.text_document is not None
     assert capabilities.workspace is not None

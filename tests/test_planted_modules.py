@@ -40,6 +40,11 @@ COMMANDS = (
     "doctor",
     "dap",
 )
+STARTING = (
+    "check .",
+    *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge", "doctor"}),
+)
+"""Commands that start other processes. ``PYTHONPATH`` is removed before it is known which command is executed."""
 AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."
 FINDINGS = 1
 
@@ -80,16 +85,23 @@ def test_the_trap_works(tmp_path: Path) -> None:
 @pytest.mark.physics
 @pytest.mark.skipif(os.name == "nt", reason="the interpreter reads PYTHONPATH before the commands of Windows can help")
 @pytest.mark.parametrize(
-    ("inside", "python_path"),
-    [(True, None), (True, ":"), (False, ":models:.")],
-    ids=["inside", "inside-empty-entry", "outside-relative-entries"],
+    ("inside", "python_path", "commands"),
+    [
+        pytest.param(True, None, COMMANDS, id="inside"),
+        pytest.param(True, ":", STARTING, id="inside-empty-entry"),
+        pytest.param(False, ":models:.", STARTING, id="outside-relative-entries"),
+        pytest.param(True, ":", COMMANDS, id="inside-empty-entry-all", marks=pytest.mark.nightly),
+        pytest.param(False, ":models:.", COMMANDS, id="outside-relative-entries-all", marks=pytest.mark.nightly),
+    ],
 )
-def test_no_command_imports_a_planted_module(inside: bool, python_path: str | None, tmp_path: Path) -> None:
+def test_no_command_imports_a_planted_module(
+    inside: bool, python_path: str | None, commands: tuple[str, ...], tmp_path: Path
+) -> None:
     hostile = HostileFolder(tmp_path)
     (hostile.models / "event.ttl").write_text(AN_EVENT, encoding="utf-8")
     start = hostile.models if inside else hostile.root
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
-    for command in COMMANDS:
+    for command in commands:
         words = command.split()
         if not inside:
             names = {path.name for path in hostile.models.iterdir()} | {"."}
@@ -129,8 +141,15 @@ def test_a_command_that_python_has_started_in_the_working_directory_says_so(tmp_
 
 @pytest.mark.physics
 @pytest.mark.skipif(os.name == "nt", reason="the interpreter reads PYTHONPATH before the commands of Windows can help")
-@pytest.mark.parametrize("python_path", [None, ":"], ids=["clean", "empty-entry"])
-@pytest.mark.parametrize("trusted", [True, False], ids=["trusted", "untrusted"])
+@pytest.mark.parametrize(
+    ("trusted", "python_path"),
+    [
+        pytest.param(True, None, id="trusted-clean"),
+        pytest.param(False, None, id="untrusted-clean"),
+        pytest.param(True, ":", id="trusted-empty-entry"),
+        pytest.param(False, ":", id="untrusted-empty-entry", marks=pytest.mark.nightly),
+    ],
+)
 async def test_no_process_of_the_server_imports_a_planted_module(
     trusted: bool, python_path: str | None, tmp_path: Path
 ) -> None:

@@ -1,4 +1,4 @@
-"""Forks processes that have the product's modules loaded: ``serve.py SOCKET``, until standard input ends.
+"""Forks processes that have the product's modules loaded, until standard input ends.
 
 What a test starts through ``launch.py`` is a process of its own, as if an interpreter had started, but without the
 half second of processor time that importing takes.
@@ -6,7 +6,6 @@ half second of processor time that importing takes.
 
 from __future__ import annotations
 
-import asyncio
 import gc
 import json
 import os
@@ -16,7 +15,6 @@ import signal
 import socket
 import struct
 import sys
-from asyncio.subprocess import PIPE, Process
 from contextlib import redirect_stdout, suppress
 from dataclasses import dataclass
 from importlib import import_module
@@ -26,18 +24,30 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from unittest.mock import patch
 
+from pygls.lsp._base_server import BaseLanguageServer
+
+from fork_server.converter import compile_all, shared_converter
 from fork_server.launch import LENGTH, STATUS
-from fork_server.launching import launch_command
-from robbdd_tools.base.interpreter import working_folder
+from fork_server.launching import STARTED_BY, interpreter_command
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pickplace"
 LOADED = (
     "behave.parser",
+    "hypothesis.internal.observability",
     "numpy",
+    "pytest",
+    "pytest_lsp",
+    "robbdd_tools.agent.execute_requests",
+    "robbdd_tools.agent.runner",
     "robbdd_tools.cli",
     "robbdd_tools.lsp.handlers",
     "robbdd_tools.lsp.main",
+    "robbdd_tools.lsp.rejudging",
     "robbdd_tools.lsp.worker",
+    "robbdd_tools.pytest_plugin.scenario_nodes",
+    "robbdd_tools.pytest_plugin.session_hooks",
+    "robbdd_tools.world.fixed_faults",
+    "robbdd_tools.world.overlaps",
     *(f"robbdd_tools.commands.{name}" for name in ("check", "export", "gherkin", "models", "query", "run", "runs")),
 )
 
@@ -176,25 +186,24 @@ def warm_up() -> None:
         main(["gherkin", model, "-o", str(Path(folder, "features"))])
 
 
-def main(address: str) -> None:
-    for name in LOADED:
-        import_module(name)
+def code_of_fork(address: str) -> str | None:
+    """Serve until standard input ends. In the server, return ``None``; in a fork, return the code that it is to run."""
+    # As in an agent: what it executes needs no graphics.
+    with patch.dict(os.environ, MUJOCO_GL="disable"):
+        for name in LOADED:
+            import_module(name)
     warm_up()
-
-    async def start_worker(code: str) -> Process:
-        command = launch_command(address, code)
-        return await asyncio.create_subprocess_exec(*command, cwd=working_folder(), stdin=PIPE, stdout=PIPE)
-
-    # A language server's validation process is a fork, too.
-    patch("robbdd_tools.lsp.shapes.start_worker", start_worker).start()
+    # What a fork starts is a fork, too: agents and the processes of a language server.
+    patch(STARTED_BY, interpreter_command(address)).start()
+    compile_all()
+    # The converter is the second argument that has a default.
+    protocol, _, *others = BaseLanguageServer.__init__.__defaults__ or ()
+    patch.object(BaseLanguageServer.__init__, "__defaults__", (protocol, shared_converter, *others)).start()
     # What is loaded is not collected again in each fork.
     gc.collect()
     gc.freeze()
     request = serve(address)
-    if request is not None:
-        become(request)
-        exec(request.arguments[0], {"__name__": "__main__"})
-
-
-if __name__ == "__main__":
-    main(sys.argv[1])
+    if request is None:
+        return None
+    become(request)
+    return request.arguments[0]

@@ -11,12 +11,19 @@ import pytest_lsp
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 from fork_kit import ROBBDD_LSP
+from fork_server.converter import FACTORY, shared_converter
 from lsp_kit import Editor, begin_session
 
 
 @pytest.fixture(autouse=True)
-def quick_start(forks: None) -> None:
-    """Start ``fork_kit.ROBBDD_LSP`` as a fork."""
+def quick_start(forked_processes: None) -> None:
+    """Start ``fork_kit.ROBBDD_LSP`` and agents as forks."""
+
+
+@pytest.fixture(autouse=True)
+def one_converter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let all clients of this process use one converter."""
+    monkeypatch.setattr(FACTORY, shared_converter)
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +13,7 @@ import pytest
 from lsprotocol import types
 
 import robbdd_tools as robbdd
+from fork_kit import PYTEST
 from kit import EXAMPLES
 from lsp_kit import Editor, plain
 from robbdd_tools.base.files import path_to_uri
@@ -44,7 +44,7 @@ def by_python(path: Path, request: Request) -> None:
 
 def by_pytest(path: Path, request: Request, *arguments: str) -> None:
     options = [f"--robbdd-{name}={value}" for name, value in request.items() if name != "jobs"]
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--robbdd", str(path), *options, *arguments]
+    command = [*PYTEST, "-p", "no:cacheprovider", "--robbdd", str(path), *options, *arguments]
     done = subprocess.run(command, cwd=path.parent, capture_output=True, text=True)
     assert done.returncode in (0, 1), done.stdout + done.stderr
 

@@ -28,9 +28,9 @@ from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project
 
-IN_CI = 340
+IN_CI = 200
 SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", IN_CI))
-FEWEST = 6
+FEWEST = 10
 """Edits of a sequence, at least."""
 
 

@@ -23,7 +23,7 @@ def main(arguments: Sequence[str]) -> int:
     from tests.nightly.targets import TARGETS
 
     fuzzing = [f"fuzz-{name}" for name in TARGETS]
-    parts = ["soak", *fuzzing, "edits", "kills", "versions"]
+    parts = ["soak", *fuzzing, "edits", "kills", "long-forms", "versions"]
     parser = argparse.ArgumentParser("python -m tests.nightly", description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0, help="for soak and fuzzing together (default: 60)")
     parser.add_argument("--only", metavar="PART,…", default=",".join(parts), help=f"of {', '.join(parts)}; or fuzz")
@@ -75,7 +75,8 @@ def _run(part: str, seed: int, seconds: float) -> tuple[int, str]:
 
         cases = fuzz(target, seed, seconds, report)
         return len(saved), f"{cases} cases"
-    return _attempt({"edits": others.edits, "kills": others.kills, "versions": others.versions}[part])
+    long = {"edits": others.edits, "kills": others.kills, "long-forms": others.long_forms, "versions": others.versions}
+    return _attempt(long[part])
 
 
 def _attempt(work: Callable[[], str]) -> tuple[int, str]:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
 SEQUENCES = 20_000
+VALIDATED = 200
+"""Sequences of edits that are compared with a validation of the whole graph."""
 KILLS = 1_000
 SMOKE = (
     "tests/syntax/test_parse.py",
@@ -38,8 +40,16 @@ SMOKE = (
 
 
 def edits() -> str:
-    """Edit models at random and compare with a fresh analysis."""
-    return _pytest("tests/names/test_incremental.py", {"ROBBDD_FUZZ": str(SEQUENCES)})[-1]
+    """Edit models at random and compare with a fresh analysis and a fresh validation."""
+    parts = (("names", SEQUENCES), ("graph", VALIDATED))
+    return "; ".join(
+        _pytest(f"tests/{part}/test_incremental.py", {"ROBBDD_FUZZ": str(count)})[-1] for part, count in parts
+    )
+
+
+def long_forms() -> str:
+    """Execute the long forms of tests of the suite."""
+    return _pytest("tests", {}, "-m", "nightly")[-1]
 
 
 def kills() -> str:

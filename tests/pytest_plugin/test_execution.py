@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from time import monotonic
 from xml.etree import ElementTree
@@ -13,9 +12,10 @@ from xml.etree import ElementTree
 import pytest
 
 import robbdd_tools as robbdd
+from fork_kit import PYTEST, ROBBDD
 from kit import DOCS, EXAMPLES
 
-pytestmark = pytest.mark.physics
+pytestmark = [pytest.mark.physics, pytest.mark.usefixtures("forked_processes")]
 AFTER = "at-goal: holds(<thing> is located at <goal>, after <evt-place-end>)"
 BEFORE = "at-goal: holds(<thing> is located at <goal>, before <evt-pick-start>)"
 PREFIX = "pickplace.bdd::tidy-bench::part-to-bin"
@@ -55,7 +55,7 @@ def cell(tmp_path: Path) -> Path:
 def run(cell: Path, *arguments: str) -> pytest.RunResult:
     """Run pytest in a separate process."""
     began = monotonic()
-    command = [sys.executable, "-m", "pytest", "--robbdd", "-p", "no:asyncio", *arguments]
+    command = [*PYTEST, "--robbdd", "-p", "no:asyncio", *arguments]
     done = subprocess.run(command, cwd=cell, capture_output=True, encoding="utf-8")
     assert "/_pytest/" not in done.stdout
     return pytest.RunResult(done.returncode, done.stdout.splitlines(), done.stderr.splitlines(), monotonic() - began)
@@ -148,7 +148,7 @@ def test_the_first_failure_ends_the_session_and_the_run_can_be_resumed(cell: Pat
     assert (stored.status.state, stored.status.finished, stored.status.total) == ("interrupted", 1, 4)
     assert stored.results[3].clauses[0].reason == "pytest ended before it was executed"
     done.stdout.fnmatch_lines(["resume the run with: robbdd run --resume 1"])
-    command = [sys.executable, "-m", "robbdd_tools.cli", "run", "--resume", "1"]
+    command = [*ROBBDD, "run", "--resume", "1"]
     assert subprocess.run(command, cwd=cell, capture_output=True).returncode == 1
     assert robbdd.find_run("1", cell).status.state == "finished"
 

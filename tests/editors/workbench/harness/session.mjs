@@ -17,12 +17,14 @@ const CHROMIUM_FLAGS = [
   "--disable-background-networking",
   "--disable-component-update",
   "--disable-sync",
+  // A window lives too short for optimized code to pay off.
+  "--js-flags=--no-opt --no-maglev",
   // Below the reach of page routes too (service workers, web views): no name but loopback resolves.
   "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost",
 ];
 
 /** Three dimensions without a graphics card, or none at all. */
-const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--disable-gpu-rasterization"];
 const NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"];
 
 export class Session {
