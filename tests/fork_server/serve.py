@@ -197,7 +197,9 @@ def code_of_fork(address: str) -> str | None:
     patch(STARTED_BY, interpreter_command(address)).start()
     compile_all()
     # The converter is the second argument that has a default.
-    protocol, _, *others = BaseLanguageServer.__init__.__defaults__ or ()
+    defaults = BaseLanguageServer.__init__.__defaults__
+    assert defaults is not None
+    protocol, _, *others = defaults
     patch.object(BaseLanguageServer.__init__, "__defaults__", (protocol, shared_converter, *others)).start()
     # What is loaded is not collected again in each fork.
     gc.collect()

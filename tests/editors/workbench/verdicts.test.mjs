@@ -66,6 +66,29 @@ step("hovering over a verdict lists each scenario", async () => {
   await workbench.page.mouse.move(5, 5);
 });
 
+step("hovering over a violated clause shows the moment and the margin over time", async () => {
+  for (const scheme of ["light", "dark"]) {
+    await workbench.changeScheme(scheme);
+    await workbench.focusEditor();
+    const { line, column } = await session.placeOf(FILE, "at-goal:");
+    await workbench.goTo(line, column);
+    // The picture of the moment is taken when the run is over; the hover that was there before has none.
+    const pictures = workbench.page.locator(".monaco-hover img");
+    await eventually(async () => {
+      await workbench.page.keyboard.press("Escape");
+      await workbench.command("Show or Focus Hover");
+      await pictures.nth(1).waitFor({ timeout: TRY });
+      await pictures.first().scrollIntoViewIfNeeded({ timeout: TRY });
+      for (const picture of await pictures.all()) {
+        const width = await picture.evaluate((image) => image.decode().then(() => image.naturalWidth));
+        assert.ok(width >= 300, `a picture is ${width} pixels wide`);
+      }
+    }, LONG);
+    await workbench.screenshot(`results-hover-${scheme}`);
+    await workbench.page.keyboard.press("Escape");
+  }
+});
+
 step("a verdict follows its clause through edits, and fades when the clause itself is edited", async () => {
   const { line, column } = await session.placeOf(FILE, ", after", "at-goal:");
   await workbench.goTo(1, 1);
