@@ -46,7 +46,7 @@ export function activate(context: vscode.ExtensionContext): void {
   const previews = new PreviewView(started);
   const graphs = new GraphView(started, context.extensionUri);
   const drawings = new SceneView(started, context.extensionUri);
-  const chooser = new RunOptionsChooser(context.workspaceState);
+  const chooser = new RunOptionsChooser(context.workspaceState, (target) => started.execute("robbdd.estimate", target));
   const tests = new TestingView(started, runs, chooser);
   const replays = new ReplayView(started, context.extensionUri, context.extension.id);
   const scenes = new PausedScene(context.extensionUri);

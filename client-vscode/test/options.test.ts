@@ -6,16 +6,30 @@ import { LanguageClient } from "./languageclient.kit";
 import { CancellationTokenSource, Uri, editor, workspace } from "./vscode.kit";
 import { MODEL, command, openWindow } from "./window.kit";
 
+interface Asked {
+  readonly command: string;
+  readonly arguments: readonly [Record<string, unknown>];
+}
+
 const asked: Record<string, unknown>[] = [];
+/** The runs whose extent was asked for. */
+const estimated: Record<string, unknown>[] = [];
+let extent: Readonly<Record<string, unknown>> = {};
 
 beforeEach(() => {
   asked.length = 0;
+  estimated.length = 0;
+  extent = { executions: 4, seconds: 3, measured: 8, words: "4 executions, about 3 s" };
 });
 
 function open(): void {
   openWindow();
   workspace.workspaceFolders = ["file:///cell", "file:///other"].map((uri) => ({ uri: Uri.parse(uri) }));
-  LanguageClient.answers.set("workspace/executeCommand", ({ arguments: [{ token, ...target }] }: { arguments: [Record<string, unknown>] }) => {
+  LanguageClient.answers.set("workspace/executeCommand", ({ command, arguments: [{ token, ...target }] }: Asked) => {
+    if (command === "robbdd.estimate") {
+      estimated.push(target);
+      return extent;
+    }
     assert.equal(typeof token, "string");
     asked.push(target);
     return {};
@@ -44,6 +58,26 @@ test("options are sent as they are set, and remembered for their workspace folde
   assert.deepEqual(asked[2], { uri: other.toString() });
   await run(MODEL, ["Reset", "Run"]);
   assert.deepEqual(asked[3], { uri: MODEL.toString() });
+});
+
+test("the extent of the run is shown with the options, or why there would be none", async () => {
+  open();
+  const shown = () => editor.lists.at(-1)?.[0]?.detail;
+  await run(MODEL, ["Repetitions"], ["3"]);
+  assert.deepEqual(estimated, [{ uri: MODEL.toString() }, { uri: MODEL.toString(), repeat: 3 }]);
+  assert.equal(shown(), "4 executions, about 3 s");
+  extent = { problem: "no scenario fits the selection" };
+  await run(MODEL, []);
+  assert.equal(shown(), "no scenario fits the selection");
+});
+
+test("pictures of violations are an option of every run", async () => {
+  open();
+  await run(MODEL, ["Pictures", "Run"]);
+  assert.equal(offered(), "with pictures");
+  assert.deepEqual(asked, [{ uri: MODEL.toString(), record: true }]);
+  await run(MODEL, ["Pictures", "Run"]);
+  assert.deepEqual(asked.at(-1), { uri: MODEL.toString() });
 });
 
 test("only one of the amounts is sent", async () => {

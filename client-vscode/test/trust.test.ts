@@ -11,7 +11,7 @@ import { CancellationTokenSource, Uri, editor, workspace } from "./vscode.kit";
 import { MODEL, client, command, openWindow, until } from "./window.kit";
 
 /** Commands of the server that run nothing of a workspace. */
-const HARMLESS = ["robbdd.cancel", "robbdd.gherkin", "robbdd.steps"];
+const HARMLESS = ["robbdd.cancel", "robbdd.estimate", "robbdd.gherkin", "robbdd.steps"];
 const RUNNING = ["robbdd.run", "robbdd.rerunFailed", "robbdd.record"];
 /** Commands of the server that the palette executes without asking: it runs a file, and debugs it. */
 const OFFERED = ["robbdd.run", ...RUNNING];

@@ -136,7 +136,7 @@ class Editor {
   /** What the user types into the boxes that are shown, one after the other; refused where a box refuses it. */
   readonly typed: string[] = [];
   /** The lists that were shown. */
-  readonly lists: (readonly { readonly label: string; readonly description?: string }[])[] = [];
+  readonly lists: (readonly { readonly label: string; readonly description?: string; readonly detail?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
   openRuns = 0;
   /** Completes the configuration of a session, and listens to its adapter. */

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.replaying import CannotReplay, Replayed, ReplayedTrace, replay
     from robbdd_tools.workbench.run import Run
     from robbdd_tools.workbench.stored import PastRun, find_run, runs
+    from robbdd_tools.workbench.time_estimate import TimeEstimate
 
 _HOMES = {
     "CannotReplay": "workbench.replaying",
@@ -67,6 +68,7 @@ _HOMES = {
     "SelectionError": "gherkin.select",
     "Severity": "base.diagnostic",
     "TextEdit": "workbench.diagnostics",
+    "TimeEstimate": "workbench.time_estimate",
     "Trace": "monitor.trace",
     "UnreadableLog": "logs.log_contents",
     "UnreadableTrace": "traces.mcap_file",
@@ -112,6 +114,7 @@ __all__ = [
     "SelectionError",
     "Severity",
     "TextEdit",
+    "TimeEstimate",
     "Trace",
     "UnreadableLog",
     "UnreadableTrace",

@@ -10,6 +10,7 @@ from gherkin_kit import edited
 from kit import MODEL, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate, row_hints
+from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import (
     Findings,
     JudgedScenario,
@@ -50,7 +51,7 @@ def judged(case: Fixture, *judgements: Judgement, iri: str = IRI) -> Findings:
         scenario.judge(iri, replace(judgement, digest=digests.clauses[iri]))
         scenario.finished = True
         results.add([scenario])
-    return results.findings()
+    return findings_of(results)
 
 
 def hints(*judgements: Judgement, text: str = MODEL) -> list[str]:
@@ -183,7 +184,7 @@ def test_clauses_that_are_unknown_because_of_another_one_have_no_problem_of_thei
         for number, iri, verdict in verdicts:
             scenarios[number - 1].judge(iri, replace(verdict, digest=digests.clauses[iri]))
         case.project.open(case.uri, 2, text)
-        found = clause_diagnostics(case.snapshot, case.uri, Results(scenarios).findings())
+        found = clause_diagnostics(case.snapshot, case.uri, findings_of(scenarios))
         return [
             (text[one.span.start :].split()[0], one.message.split("\n")[0], [other.message for other in one.related])
             for one in found
@@ -256,7 +257,7 @@ def test_a_pass_rate_goes_stale_with_its_variant_and_its_template() -> None:
     assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "✗ 1/3 passed (stale)"
     assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "✗ 1/3 passed (stale)"
     (variant,) = variants_of(case.snapshot, case.uri)
-    assert pass_rate(case.snapshot, variant, Results().findings()) is None
+    assert pass_rate(case.snapshot, variant, findings_of(())) is None
 
 
 def test_the_number_of_scenarios_is_told_from_the_text() -> None:
@@ -271,10 +272,12 @@ def test_a_scenario_that_is_run_again_replaces_its_result() -> None:
     scenarios = [JudgedScenario("m", "v", number, "", "", "") for number in (1, 1, 2)]
     results.add(scenarios)
     assert list(results) == scenarios
-    results.drop("v", 1)
-    assert list(results) == scenarios[2:]
-    results.drop_others("v", {1})
-    assert list(results) == []
+    other = replace(scenarios[0], project="another")
+    results.add([other])
+    results.drop(("", "v", 1))
+    assert list(results) == [scenarios[2], other]
+    results.drop_others("", "v", {1})
+    assert list(results) == [other]
 
 
 def test_a_clause_repeated_in_a_scenario_is_as_good_as_its_worst() -> None:

@@ -10,7 +10,8 @@ from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE, fixture
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
-from robbdd_tools.features.run_verdicts import NOTHING, Findings, JudgedScenario, Judgement, Results, digests_of
+from robbdd_tools.features.project_findings import findings_of
+from robbdd_tools.features.run_verdicts import NOTHING, Findings, JudgedScenario, Judgement, digests_of
 
 
 def shown(text: str, findings: Findings = NOTHING) -> str:
@@ -125,7 +126,7 @@ def test_the_last_results_of_a_clause_are_shown_worst_first() -> None:
         JudgedScenario(case.uri, "v", number, f"part = {part}", "", "", {iri: judgement}, True)
         for number, (part, judgement) in enumerate((("nut", held), ("bolt", failed)))
     ]
-    findings = Results(scenarios).findings()
+    findings = findings_of(scenarios)
     found = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds"), findings)
     assert "Last results:\n\n- part = bolt: ✗ −3 mm at 2.00 s\n- part = nut: ✔ +12 mm" in found
     clause = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"

@@ -10,7 +10,14 @@ from kit import MODEL, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.features.clause_results import ResultHint, appearance, clause_diagnostics, clause_hints
 from robbdd_tools.features.hover import hover
-from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement, RejudgedExecution, Results, digests_of
+from robbdd_tools.features.project_findings import findings_of
+from robbdd_tools.features.run_verdicts import (
+    JudgedScenario,
+    Judgement,
+    RejudgedExecution,
+    Results,
+    digests_of,
+)
 
 NS = "https://example.org/t/"
 IRI = f"{NS}in-tray"
@@ -49,7 +56,7 @@ def shown(
             found[1, index] = RejudgedExecution(again)
         elif again is not None:
             found[1, index] = RejudgedExecution("", {IRI: replace(again, digest=now.clauses[IRI])})
-    findings = results.findings({case.uri: found})
+    findings = findings_of(results, {case.uri: found})
     described = hover(case.snapshot, case.uri, text.index("in-tray:"), findings)
     assert described is not None
     return (
@@ -123,5 +130,5 @@ def test_a_verdict_on_an_older_text_of_the_clause_is_not_shown() -> None:
     scenario.judge(IRI, replace(HOLDS, digest=digests.clauses[IRI]))
     results = Results([scenario])
     rejudged = {case.uri: {(1, 0): RejudgedExecution("", {IRI: replace(VIOLATED, digest="of another text")})}}
-    (hint,) = clause_hints(case.snapshot, case.uri, results.findings(rejudged))
+    (hint,) = clause_hints(case.snapshot, case.uri, findings_of(results, rejudged))
     assert hint.label == "✔ +31 mm"

@@ -9,7 +9,8 @@ import pytest
 from kit import MODEL, fixture
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.clause_results import clause_diagnostics
-from robbdd_tools.features.run_verdicts import Results, digests_of
+from robbdd_tools.features.project_findings import findings_of
+from robbdd_tools.features.run_verdicts import digests_of
 from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.lsp.locations import Places
 from robbdd_tools.lsp.run_messages import for_client
@@ -65,7 +66,7 @@ def test_the_cause_of_a_failure_is_shown_first(verdict: str, fields: dict[str, o
     found.apply(message)
     assert for_client("run", text, found, message)["message"]["failure"] == words
 
-    scenario = judged_scenario(SPEC, case.uri, digests, run=1, index=0, seed=None)
+    scenario = judged_scenario(SPEC, case.uri, digests, "", run=1, index=0, seed=None)
     scenario.judge(CLAUSE.iri, judgement(CLAUSE, message, digests))
-    (problem,) = clause_diagnostics(case.snapshot, case.uri, Results([scenario]).findings())
+    (problem,) = clause_diagnostics(case.snapshot, case.uri, findings_of([scenario]))
     assert problem.message == f"{words} [part = nut]"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import re
 from collections.abc import AsyncIterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -23,11 +25,13 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project
 from robbdd_tools.protocol.specs import ClauseSpec
+from robbdd_tools.run.database import open_database
 from robbdd_tools.run.store import store_beside
 from robbdd_tools.workbench.judged_text import judged_texts, write_texts
 from run.recorded import record_run
 
 CLAUSE = "at-goal: holds("
+VARIANT = "https://example.org/robbdd/criteria/part-to-bin"
 EDIT = ("<thing> is located at <goal>, after <evt-place-end>", "<thing> is located at <goal>, after <evt-pick-end>")
 
 
@@ -65,6 +69,28 @@ async def test_the_history_of_a_clause_counts_each_run_and_tells_which_judged_an
     edited = await ask(editor, "history", clause=iri)
     assert [run["stale"] for run in edited["runs"]] == [True, True]
     assert await ask(editor, "history", position={"line": 0, "character": 0}) is None
+
+
+async def test_a_large_run_is_announced_with_the_time_that_stored_runs_need(editor: Editor) -> None:
+    record(editor.path, [0.2, 0.1], [0.2])
+    with closing(open_database(store_beside(editor.path).database)) as database:
+        database.execute("UPDATE execution SET wall = 400, variant = ?", (VARIANT,))
+    editor.open()
+    answer = await estimated(editor, jobs=2, repeat=3)
+    assert answer == {"executions": 12, "seconds": 2400, "measured": 3, "words": "12 executions, about 40 min"}
+    assert (await estimated(editor, where="goal=left_ws", first=1))["words"] == "1 execution, about 7 min"
+    assert await estimated(editor, where="goal=nowhere") == {"problem": "no scenario fits the selection"}
+    assert (await estimated(editor, jobs="two"))["problem"].endswith("it must be a whole number above 0")
+    everything = types.Range(types.Position(0, 0), types.Position(1000, 0))
+    document = types.TextDocumentIdentifier(editor.uri)
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(document, everything))
+    minutes = round(4 * 400 / min(4, os.cpu_count() or 1) / 60)
+    assert f"4 scenarios, about {minutes} min" in [hint.label for hint in hints or ()]
+
+
+async def estimated(editor: Editor, **options: object) -> Any:
+    params = types.ExecuteCommandParams("robbdd.estimate", [{"uri": editor.uri, **options}])
+    return plain(await editor.client.workspace_execute_command_async(params))
 
 
 async def test_two_runs_are_compared_as_documented(editor: Editor) -> None:

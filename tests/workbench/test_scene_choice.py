@@ -94,7 +94,7 @@ def test_an_editor_names_the_file_from_the_folder_of_the_model(tidy: Path) -> No
     plan = Plan.of_files(file.uri, None, (file,), selection)
     (spec, *_) = plan.scenarios
     assert spec.choices == (WORDS,)
-    result = judged_scenario(spec, file.uri, Digests({}, {}, {}, {}), run=1, index=0, seed=None)
+    result = judged_scenario(spec, file.uri, Digests({}, {}, {}, {}), "", run=1, index=0, seed=None)
     again, _ = select(RunOptions.of({"uri": file.uri, "failed": True}), file.acceptance, [result])
     assert [spec.choices for spec in Plan.of_files(file.uri, None, (file,), again).scenarios] == [(WORDS,)]
 

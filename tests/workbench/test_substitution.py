@@ -15,6 +15,7 @@ from kit import EXAMPLES, corpus
 from robbdd_tools.cli import main
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import result_words
+from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import Results, digests_of
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.lsp.client_settings import Settings
@@ -114,13 +115,13 @@ def hover(place: StoredRun, model: Any) -> str:
     assert results is not None
     digests = digests_of(file.snapshot, file.uri)
     for index, result in enumerate(results.scenarios):
-        scenario = judged_scenario(result.spec, file.uri, digests, run=1, index=index, seed=None)
+        scenario = judged_scenario(result.spec, file.uri, digests, "", run=1, index=index, seed=None)
         for clause in result.spec.clauses:
             scenario.judge(clause.iri, judgement(clause, result.judged[clause.line], digests))
         shown.add([scenario])
     hints = (
         hint for each in file.snapshot.closure(file.uri)
-        for hint in clause_hints(file.snapshot, each.document.uri, shown.findings())
+        for hint in clause_hints(file.snapshot, each.document.uri, findings_of(shown))
     )  # fmt: skip
     return result_words(next(hints))
 

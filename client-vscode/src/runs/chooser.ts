@@ -1,24 +1,35 @@
 // Ask for the options of a run, and remember them for each workspace folder.
 import * as vscode from "vscode";
 import { withoutIcons } from "../literal";
-import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, substitutionProblem, summaryOf, typedNumber, withOption, wordsOf } from "./options";
+import { type Amount, type OptionName, type RunOptions, argumentsOf, extentIn, numberProblem, optionsIn, substitutionProblem, summaryOf, typedNumber, withOption, wordsOf } from "./options";
 
 const KEY = "robbdd.runOptions";
 const TITLE = "Run with Options";
+/** Milliseconds that the list waits for the extent of a run. */
+const PATIENCE = 1000;
 
 interface Entry extends vscode.QuickPickItem {
   readonly action: OptionName | "run" | "reset";
 }
 
 export class RunOptionsChooser {
-  constructor(private readonly memory: vscode.Memento) {}
+  /** `estimate` asks the server for the extent of a run, given the arguments of `robbdd.run`. */
+  constructor(
+    private readonly memory: vscode.Memento,
+    private readonly estimate: (target: Readonly<Record<string, unknown>>) => Promise<unknown>,
+  ) {}
 
-  /** Ask for the options of a run of a model; undefined if the user cancels. They are remembered either way. */
-  async choose(model: vscode.Uri): Promise<RunOptions | undefined> {
+  /**
+   * Ask for the options of a run of a model; undefined if the user cancels. They are remembered either way. `parts` are
+   * further arguments of `robbdd.run` for each file, such as the selected tests; the extent of several files is not shown.
+   */
+  async choose(model: vscode.Uri, parts: readonly Readonly<Record<string, unknown>>[] = [{}]): Promise<RunOptions | undefined> {
     const key = `${KEY}:${folderOf(model)}`;
+    const [part, ...others] = parts;
     let options = optionsIn(this.memory.get(key));
     for (;;) {
-      const chosen = await vscode.window.showQuickPick(entries(options), {
+      const extent = others.length > 0 ? undefined : await this.extent(model, { ...part, ...argumentsOf(options) });
+      const chosen = await vscode.window.showQuickPick(entries(options, extent), {
         title: TITLE,
         placeHolder: "Enter runs; choose an option to change it",
       });
@@ -29,17 +40,28 @@ export class RunOptionsChooser {
       await this.memory.update(key, options);
     }
   }
+
+  /** How many executions a run has, and how long they take; or why there would be none. Undefined if that is not known soon. */
+  private async extent(model: vscode.Uri, part: Readonly<Record<string, unknown>>): Promise<string | undefined> {
+    let timer: NodeJS.Timeout | undefined;
+    const late = new Promise<undefined>((resolve) => {
+      timer = setTimeout(resolve, PATIENCE, undefined);
+    });
+    const answer = await Promise.race([this.estimate({ ...part, uri: model.toString() }), late]);
+    clearTimeout(timer);
+    return extentIn(answer);
+  }
 }
 
 function folderOf(model: vscode.Uri): string {
   return vscode.workspace.getWorkspaceFolder(model)?.uri.toString() ?? "";
 }
 
-function entries(options: RunOptions): Entry[] {
+function entries(options: RunOptions, extent: string | undefined): Entry[] {
   const summary = summaryOf(options);
   const option = (label: string, action: OptionName): Entry => ({ label, description: withoutIcons(wordsOf(options, action)), action });
   return [
-    { label: "$(play) Run", description: withoutIcons(summary), action: "run" },
+    { label: "$(play) Run", description: withoutIcons(summary), ...(extent === undefined ? {} : { detail: withoutIcons(extent) }), action: "run" },
     option("$(filter) Values", "where"),
     option("$(list-filter) Scenarios", "amount"),
     option("$(sync) Repetitions", "repeat"),
@@ -47,6 +69,7 @@ function entries(options: RunOptions): Entry[] {
     option("$(server-process) Processes", "jobs"),
     option("$(replace) Behaviours", "bhv"),
     option("$(symbol-structure) Executable Scene", "scenex"),
+    option("$(device-camera) Pictures", "record"),
     ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "reset all to the model's values", action: "reset" } as const]),
   ];
 }
@@ -77,6 +100,8 @@ async function change(options: RunOptions, name: OptionName): Promise<RunOptions
       const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.scenex ?? "" });
       return typed === undefined ? options : withOption(options, name, typed.trim());
     }
+    case "record":
+      return withOption(options, name, options.record === true ? undefined : true);
   }
 }
 

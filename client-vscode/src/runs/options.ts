@@ -22,6 +22,8 @@ export interface RunOptions {
   readonly bhv?: string;
   /** The path of a `.scenex` for scenarios without an execution, absolute or from the model's folder. */
   readonly scenex?: string;
+  /** Whether violations are rendered as pictures. */
+  readonly record?: true;
 }
 
 export type OptionName = keyof RunOptions;
@@ -54,7 +56,7 @@ export function optionsIn(remembered: unknown): RunOptions {
   if (!isRecord(remembered)) {
     return {};
   }
-  const { where, amount, repeat, seed, jobs, bhv, scenex } = remembered;
+  const { where, amount, repeat, seed, jobs, bhv, scenex, record } = remembered;
   return {
     ...(typeof where === "string" && where !== "" ? { where } : {}),
     ...(isAmount(amount) ? { amount } : {}),
@@ -63,6 +65,7 @@ export function optionsIn(remembered: unknown): RunOptions {
     ...(isCount(jobs) ? { jobs } : {}),
     ...(typeof bhv === "string" && bhv !== "" && substitutionProblem(bhv) === undefined ? { bhv } : {}),
     ...(typeof scenex === "string" && scenex !== "" ? { scenex } : {}),
+    ...(record === true ? { record } : {}),
   };
 }
 
@@ -77,7 +80,7 @@ export function withOption<Name extends OptionName>(
 
 /** An option as text, set or not. */
 export function wordsOf(options: RunOptions, name: OptionName): string {
-  const { where, amount, repeat, seed, jobs, bhv, scenex } = options;
+  const { where, amount, repeat, seed, jobs, bhv, scenex, record } = options;
   switch (name) {
     case "where":
       return where ?? "any values";
@@ -93,12 +96,14 @@ export function wordsOf(options: RunOptions, name: OptionName): string {
       return bhv ?? "as in the model";
     case "scenex":
       return scenex ?? "as in the model";
+    case "record":
+      return record === true ? "of each violation" : "none";
   }
 }
 
 /** All set options in one line. */
 export function summaryOf(options: RunOptions): string {
-  const { where, amount, repeat, seed, jobs, bhv, scenex } = options;
+  const { where, amount, repeat, seed, jobs, bhv, scenex, record } = options;
   const parts = [
     ...(where === undefined ? [] : [`where ${where}`]),
     ...(amount === undefined ? [] : [amountWords(amount)]),
@@ -107,8 +112,15 @@ export function summaryOf(options: RunOptions): string {
     ...(jobs === undefined ? [] : [`${jobs} at a time`]),
     ...(bhv === undefined ? [] : [`with ${bhv}`]),
     ...(scenex === undefined ? [] : [`in ${scenex}`]),
+    ...(record === undefined ? [] : ["with pictures"]),
   ];
   return parts.length === 0 ? "all as in the model" : parts.join(", ");
+}
+
+/** The extent of a run in the server's answer, or the reason why there would be no run. */
+export function extentIn(answer: unknown): string | undefined {
+  const words = isRecord(answer) ? (answer["words"] ?? answer["problem"]) : undefined;
+  return typeof words === "string" ? words : undefined;
 }
 
 /** The problem of a typed number; undefined for a valid one and for an empty text, which means the model's value. */

@@ -131,7 +131,7 @@ export class TestRunner implements vscode.Disposable {
       if (problem !== undefined) {
         follower.refuse(only.flatMap((wanted) => this.tree.wanted(uri, wanted)), problem);
       }
-      for (const line of command === "robbdd.record" ? recordingWords(answer) : []) {
+      for (const line of command === "robbdd.record" || options["record"] === true ? recordingWords(answer) : []) {
         run.appendOutput(`${withoutControls(line)}\r\n`);
       }
     });

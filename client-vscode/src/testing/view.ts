@@ -122,8 +122,9 @@ export class TestingView implements vscode.Disposable {
     if (request.include === undefined) {
       await this.upkeep.discover();
     }
-    const [file] = this.runner.choose(request);
-    const options = file && (await this.chooser.choose(vscode.Uri.parse(file.uri)));
+    const files = this.runner.choose(request);
+    const [file] = files;
+    const options = file && (await this.chooser.choose(vscode.Uri.parse(file.uri), files.map(({ only }) => ({ only }))));
     if (options !== undefined) {
       await this.runner.execute(request, token, "robbdd.run", { options: argumentsOf(options) });
     }

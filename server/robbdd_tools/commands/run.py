@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
+from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.debugging import check_debugger
 from robbdd_tools.run.pictures import NoPictures, no_display, render_videos, render_violations
 from robbdd_tools.run.run_policy import Policy
@@ -28,6 +30,7 @@ from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.rerun import NothingFailed, failed_in, last_run
 from robbdd_tools.workbench.run import Run
 from robbdd_tools.workbench.stored import store_at
+from robbdd_tools.workbench.time_estimate import estimate
 
 if TYPE_CHECKING:
     from robbdd_tools.run.results import RunResults
@@ -145,8 +148,17 @@ def _run(options: RunOptions) -> int:
         print_note(f"robbdd: {place.remark}")
     policy = viewed_policy(options.policy, viewer=options.viewer)
     with Run.begin(plan, place.place, policy, repeat=repeat, on_close=place.remove) as run:
+        _announce(run, policy)
         ended_by = follow_run(run)
         return conclude(run, options.outputs, ended_by)
+
+
+def _announce(run: Run, policy: Policy) -> None:
+    """Print the estimated duration of a large run. A database that cannot be read is reported with the results."""
+    with suppress(DatabaseProblem):
+        expected = estimate(run.manifest.scenarios, run.place.database, policy.jobs)
+        if expected.is_large:
+            print_note(f"robbdd: {expected} ({expected.basis})")
 
 
 def _unwritable(outputs: Outputs) -> str:

@@ -6,7 +6,6 @@ import hashlib
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
@@ -74,6 +73,7 @@ class JudgedScenario:
     - ``seed``: the seed that the user gave for the run, or ``None``.
     - ``substitution``: the catalog behaviour that was executed instead of the model's.
     - ``scene_instance``: the scene instance that the user chose.
+    - ``project``: the root folder of the model's project. Models of different projects may have the same IRIs.
     """
 
     model: str
@@ -93,6 +93,12 @@ class JudgedScenario:
     seed: int | None = None
     substitution: Substitution | None = None
     scene_instance: ChosenScene | None = None
+    project: str = ""
+
+    @property
+    def scenario_key(self) -> ScenarioKey:
+        """What identifies the scenario among all results."""
+        return self.project, self.variant, self.variation
 
     @property
     def outcome(self) -> str:
@@ -114,6 +120,8 @@ class JudgedScenario:
             self.clauses[iri] = replace(self.clauses[iri], vacuous=reasons[iri])
 
 
+ScenarioKey = tuple[str, str, int]
+"""The project, the variant's IRI and the number of a scenario."""
 Judged = tuple[JudgedScenario, Judgement]
 
 
@@ -166,7 +174,7 @@ class Results:
     """The latest result of every scenario. A new result replaces the previous one."""
 
     def __init__(self, scenarios: Iterable[JudgedScenario] = ()) -> None:
-        self._scenarios: dict[tuple[str, int], list[JudgedScenario]] = {}
+        self._scenarios: dict[ScenarioKey, list[JudgedScenario]] = {}
         self.add(scenarios)
 
     def __iter__(self) -> Iterator[JudgedScenario]:
@@ -176,15 +184,15 @@ class Results:
     def add(self, scenarios: Iterable[JudgedScenario]) -> None:
         """Add scenarios without replacing others, because a scenario may be executed several times."""
         for scenario in scenarios:
-            self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
+            self._scenarios.setdefault(scenario.scenario_key, []).append(scenario)
 
-    def drop(self, variant: str, variation: int, execution: str = "", repetition: int | None = None) -> None:
+    def drop(self, key: ScenarioKey, execution: str = "", repetition: int | None = None) -> None:
         """Remove the results of a scenario that is executed again.
 
         Results by executions other than ``execution`` stay. If a ``repetition`` is given, the results of other
         repetitions stay, too.
         """
-        known = self._scenarios.pop((variant, variation), [])
+        known = self._scenarios.pop(key, [])
         self.add(one for one in known if not _is_replaced(one, execution, repetition))
 
     def merge(self, scenarios: Iterable[JudgedScenario], newest: int, *, some_repetitions: bool = False) -> None:
@@ -193,65 +201,36 @@ class Results:
         ``newest`` is the number of the latest run in the store. ``some_repetitions`` is true if the run executed only
         some of the repetitions; the others then keep their results.
         """
-        groups: dict[tuple[str, int, str, int | None], list[JudgedScenario]] = {}
+        groups: dict[tuple[ScenarioKey, str, int | None], list[JudgedScenario]] = {}
         for one in scenarios:
             repetition = one.repetition if some_repetitions else None
-            groups.setdefault((one.variant, one.variation, one.execution, repetition), []).append(one)
-        for (variant, variation, execution, repetition), group in groups.items():
-            known = self._scenarios.get((variant, variation), ())
+            groups.setdefault((one.scenario_key, one.execution, repetition), []).append(one)
+        for (key, execution, repetition), group in groups.items():
+            known = self._scenarios.get(key, ())
             replaced = [one for one in known if _is_replaced(one, execution, repetition)]
             if not any(newest >= one.run >= group[0].run for one in replaced):
-                self.drop(variant, variation, execution, repetition)
+                self.drop(key, execution, repetition)
                 self.add(group)
 
     def discard(self, scenario: JudgedScenario) -> None:
         """Remove the result of one execution of a scenario."""
-        known = self._scenarios.pop((scenario.variant, scenario.variation), [])
+        known = self._scenarios.pop(scenario.scenario_key, [])
         self.add(one for one in known if one is not scenario)
 
-    def drop_others(self, variant: str, kept: Collection[int]) -> None:
-        """Remove the results of scenarios that a variant no longer has."""
-        for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
+    def drop_others(self, project: str, variant: str, kept: Collection[int]) -> None:
+        """Remove the results of scenarios that a variant of a project no longer has."""
+        for key in [key for key in self._scenarios if key[:2] == (project, variant) and key[2] not in kept]:
             del self._scenarios[key]
 
     def drop_deleted(self, model: str, variants: Collection[str], executions: Collection[str] = ()) -> None:
         """Remove the results of variants and executions that a model no longer contains."""
-        gone = {entry.variant for entry in self if entry.model == model} - set(variants)
-        for key in [key for key in self._scenarios if key[0] in gone]:
+        own = (entry for entry in self if entry.model == model)
+        gone = {(entry.project, entry.variant) for entry in own if entry.variant not in variants}
+        for key in [key for key in self._scenarios if key[:2] in gone]:
             del self._scenarios[key]
         known = {"", *executions}
         for entry in [entry for entry in self if entry.model == model and entry.execution not in known]:
             self.discard(entry)
-
-    def findings(self, rejudged: RejudgedExecutions = MappingProxyType({})) -> Findings:
-        """Return the current results, with those of stored traces on edited clauses."""
-        clauses: dict[str, list[Judged]] = {}
-        variants: dict[str, list[JudgedScenario]] = {}
-        edited: dict[str, list[RejudgedClause]] = {}
-        for scenario in self:
-            for iri, judged in _rejudged_clauses(scenario, rejudged.get(scenario.model, {})):
-                edited.setdefault(iri, []).append(judged)
-            variants.setdefault(scenario.variant, []).append(scenario)
-            for iri, judgement in scenario.clauses.items():
-                clauses.setdefault(iri, []).append((scenario, judgement))
-        return Findings(
-            {iri: tuple(judged) for iri, judged in clauses.items()},
-            {iri: tuple(scenarios) for iri, scenarios in variants.items()},
-            {iri: tuple(judged) for iri, judged in edited.items()},
-        )
-
-
-def _rejudged_clauses(
-    scenario: JudgedScenario, rejudged: Mapping[tuple[int, int], RejudgedExecution]
-) -> Iterator[tuple[str, RejudgedClause]]:
-    found = rejudged.get((scenario.run, scenario.index))
-    if found is None:
-        return
-    if found.reason:
-        for iri, before in scenario.clauses.items():
-            yield iri, RejudgedClause(scenario, None, before, found.reason)
-    for iri, judgement in found.clauses.items():
-        yield iri, RejudgedClause(scenario, judgement, scenario.clauses.get(iri))
 
 
 def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) -> bool:

@@ -16,19 +16,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioHint:
-    """The inlay hint after the name of a variant. ``span`` is the absolute span of the name."""
+    """The inlay hint after the name of a variant. ``span`` is the absolute span of the name, ``variant`` its IRI."""
 
     span: Span
-    label: str
+    count: int
+    variant: str | None
+
+    @property
+    def label(self) -> str:
+        """The number of scenarios in words."""
+        return f"{self.count:,} scenario{'' if self.count == 1 else 's'}"
 
 
 def scenario_hints(snapshot: Snapshot, uri: str, within: Span) -> list[ScenarioHint]:
     """Return a hint for each variant in a span of a file. A variant that uses an unknown set has no hint."""
     file = snapshot.file(uri)
+    if file is None:
+        return []
     hints: list[ScenarioHint] = []
-    for site in story_sites(snapshot, file, within) if file is not None else ():
+    for site in story_sites(snapshot, file, within):
         for scenario in scenarios(site):
             count, span = scenario_count(scenario), site.span(scenario.variant.name)
             if count is not None and within.contains(span.end):
-                hints.append(ScenarioHint(span, f"{count:,} scenario{'' if count == 1 else 's'}"))
+                known = file.definitions.get(scenario.clauses.path)
+                hints.append(ScenarioHint(span, count, None if known is None else known.iri))
     return hints

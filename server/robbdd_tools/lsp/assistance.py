@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any, cast
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, cast
 
 from lsprotocol import types
 
@@ -12,12 +13,16 @@ from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.hover import Hover, hover
 from robbdd_tools.features.policy_results import policy_hints
-from robbdd_tools.features.scenario_hints import scenario_hints
+from robbdd_tools.features.scenario_hints import ScenarioHint, scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
 from robbdd_tools.lsp.result_hover import history_line, pictures_of, replay_link
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
+from robbdd_tools.run.database import DatabaseProblem
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Document
 
 STILL_READING = "*(so far: files that may use it are still being read)*"
 
@@ -65,7 +70,12 @@ def _register_hover(server: RobbddServer) -> None:
     async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
         def find(snapshot: Snapshot) -> tuple[Hover, types.Range] | None:
             document = document_of(snapshot, params.text_document.uri)
-            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.findings)
+            found = hover(
+                snapshot,
+                document.uri,
+                ls.convert.offset(document, params.position),
+                ls.findings_of(snapshot, document.uri),
+            )
             return None if found is None else (found, ls.convert.range(document, found.span))
 
         is_whole = await ls.importers.are_there(params.text_document.uri, params.position)
@@ -93,6 +103,7 @@ def _register_hints(server: RobbddServer) -> None:
         def find(snapshot: Snapshot) -> list[types.InlayHint]:
             document = document_of(snapshot, params.text_document.uri)
             wanted = ls.convert.span(document, params.range)
+            findings = ls.findings_of(snapshot, document.uri)
             return (
                 [
                     types.InlayHint(
@@ -103,7 +114,7 @@ def _register_hints(server: RobbddServer) -> None:
                         data=appearance(hint),
                     )
                     for find_hints in (clause_hints, row_hints, policy_hints)
-                    for hint in find_hints(snapshot, document.uri, ls.findings)
+                    for hint in find_hints(snapshot, document.uri, findings)
                     if wanted.contains(hint.head.end)
                 ]
                 + [
@@ -114,15 +125,23 @@ def _register_hints(server: RobbddServer) -> None:
                     )
                     for hint in type_hints(snapshot, document.uri, wanted)
                 ]
-                + [
-                    types.InlayHint(
-                        position=ls.convert.position(document, hint.span.end),
-                        label=hint.label,
-                        kind=types.InlayHintKind.Parameter,
-                        padding_left=True,
-                    )
-                    for hint in scenario_hints(snapshot, document.uri, wanted)
-                ]
+                + [_scenario_hint(ls, document, hint) for hint in scenario_hints(snapshot, document.uri, wanted)]
             )
 
         return await ls.analyse(find)
+
+
+def _scenario_hint(ls: RobbddServer, document: Document, hint: ScenarioHint) -> types.InlayHint:
+    """Return the hint with the number of scenarios and, if executing them takes a minute or longer, with the time."""
+    label, tooltip = hint.label, None
+    with suppress(DatabaseProblem):
+        expected = None if hint.variant is None else ls.stores.estimate(document.uri, {hint.variant: hint.count})
+        if expected is not None and expected.is_large:
+            label, tooltip = f"{label}, about {expected.duration}", expected.basis
+    return types.InlayHint(
+        position=ls.convert.position(document, hint.span.end),
+        label=label,
+        tooltip=tooltip,
+        kind=types.InlayHintKind.Parameter,
+        padding_left=True,
+    )

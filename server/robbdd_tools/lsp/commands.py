@@ -22,13 +22,14 @@ from robbdd_tools.gherkin.feature_files import write_features
 from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.document_models import feature_plan, reason
-from robbdd_tools.lsp.runs import cancel_run, start_run
+from robbdd_tools.lsp.runs import cancel_run, estimate_run, start_run
 from robbdd_tools.lsp.server import RobbddServer
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 RUN, RERUN, RECORD, CANCEL = "robbdd.run", "robbdd.rerunFailed", "robbdd.record", "robbdd.cancel"
+ESTIMATE = "robbdd.estimate"
 GHERKIN, STEPS = "robbdd.gherkin", "robbdd.steps"
 _UNDEFINED = "clause-undefined"
 
@@ -51,6 +52,10 @@ def _register_runs(server: RobbddServer) -> None:
     @server.command(RECORD)
     async def record(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
         return await start_run(ls, _checked(RECORD, target), record=True)
+
+    @server.command(ESTIMATE)
+    async def estimate(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
+        return await estimate_run(ls, _checked(ESTIMATE, target))
 
     @server.command(CANCEL)
     def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
@@ -93,7 +98,7 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
         *(no_evaluator(snapshot, file) if file is not None else ()),
         *(
             one
-            for one in clause_diagnostics(snapshot, uri, ls.findings, brief=ls.shows_pictures)
+            for one in clause_diagnostics(snapshot, uri, ls.findings_of(snapshot, uri), brief=ls.shows_pictures)
             if one.code == _UNDEFINED
         ),
     ]

@@ -124,7 +124,7 @@ def _register_actions(server: RobbddServer) -> None:
             found = refactorings(ls, snapshot, uri, selected)
             actions += (action for action in found if not only or any(_is(action.kind, kind) for kind in only))
             if _asked(only, types.CodeActionKind.Source):
-                actions += source_actions(snapshot, uri, selected, ls.findings)
+                actions += source_actions(snapshot, uri, selected, ls.findings_of(snapshot, uri))
             return actions
 
         await ls.importers.looked_around()

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import never_judged
 from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.report import failure_words, margin, values_words, verdict_words
+from robbdd_tools.run.store import project_root
 
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import Digests
@@ -21,9 +23,12 @@ _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
 
 def judged_scenario(
-    spec: ScenarioSpec, uri: str, digests: Digests, *, run: int, index: int, seed: int | None
+    spec: ScenarioSpec, uri: str, digests: Digests, project: str, *, run: int, index: int, seed: int | None
 ) -> JudgedScenario:
-    """Return scenario number ``index`` (from 0) of a run, without verdicts. ``seed`` is the seed that the user gave."""
+    """Return scenario number ``index`` (from 0) of a run, without verdicts.
+
+    ``project`` is the root folder of the model's project (``project_of``); ``seed`` is the seed that the user gave.
+    """
     execution = "" if spec.execution is None else spec.execution.iri
     return JudgedScenario(
         uri,
@@ -40,7 +45,14 @@ def judged_scenario(
         seed=seed,
         substitution=spec.substitution,
         scene_instance=spec.chosen_scene,
+        project=project,
     )
+
+
+def project_of(uri: str) -> str:
+    """Return the root folder of a document's project; empty for a document that is no file."""
+    path = uri_to_path(uri)
+    return "" if path is None else str(project_root(path))
 
 
 def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, shared_fault: str = "") -> Judgement:

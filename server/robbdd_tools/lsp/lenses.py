@@ -60,7 +60,7 @@ def register_lenses(server: RobbddServer) -> None:
         def find(snapshot: Snapshot) -> list[types.CodeLens]:
             document = document_of(snapshot, uri)
             found: list[types.CodeLens] = []
-            for one in _runnable(snapshot, uri, ls.findings):
+            for one in _runnable(snapshot, uri, ls.findings_of(snapshot, uri)):
                 place = ls.convert.range(document, one.definition.span)
                 found += [types.CodeLens(place, command) for command in _lenses(one, one.variant in recorded)]
                 if one.rate is not None:

@@ -6,7 +6,7 @@ import asyncio
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, with_cause
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_progress import RunProgress
@@ -42,6 +42,7 @@ class RunFollower:
         self._active = active
         self._run = run
         self._text = text
+        self._project = project_of(text.uri)
         self._progress = RunProgress(ls, active.progress)
         self._results = RunResults(run.manifest)
         self._loop = asyncio.get_running_loop()
@@ -92,7 +93,7 @@ class RunFollower:
                 self._ls.results.discard(scenario)
         if self._active.options.is_whole and not ending:
             for variant, begun in self._begun.items():
-                self._ls.results.drop_others(variant, {number for number, *_ in begun})
+                self._ls.results.drop_others(self._project, variant, {number for number, *_ in begun})
         for scenario in self._active.judged.values():
             if not scenario.finished and not scenario.clauses:
                 self._ls.results.discard(scenario)
@@ -135,14 +136,16 @@ class RunFollower:
         if known is not None:
             return known
         spec, text = self._results.scenarios[index].spec, self._text
-        scenario = judged_scenario(spec, text.uri, text.digests, run=self._run.number, index=index, seed=text.seed)
+        scenario = judged_scenario(
+            spec, text.uri, text.digests, self._project, run=self._run.number, index=index, seed=text.seed
+        )
         self._active.judged[index] = scenario
         # A scenario keeps its older results until it is executed again; repetitions that held are not executed again.
         repetition = spec.repetition if self._active.options.failed else None
         begun = self._begun.setdefault(spec.variant, set())
         if (spec.variation, scenario.execution, repetition) not in begun:
             begun.add((spec.variation, scenario.execution, repetition))
-            self._ls.results.drop(spec.variant, spec.variation, scenario.execution, repetition)
+            self._ls.results.drop(scenario.scenario_key, scenario.execution, repetition)
         self._ls.results.add([scenario])
         return scenario
 

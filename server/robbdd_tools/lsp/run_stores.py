@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from threading import Lock
 
 from robbdd_tools.base.files import file_state, path_to_uri, uri_to_path
 from robbdd_tools.run.clause_history import ClauseRun, clause_history
 from robbdd_tools.run.database import LOG
+from robbdd_tools.run.execution_times import Duration, usual_durations
 from robbdd_tools.run.json_documents import traced_variants
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root, store_beside
+from robbdd_tools.workbench.time_estimate import TimeEstimate, estimate_from
 
 MAX_HISTORIES = 200
 """Number of clauses whose history is kept in memory."""
@@ -25,6 +28,7 @@ class Stores:
         self._folder: Path | None = None
         self._lock = Lock()
         self._histories: dict[tuple[Path, str], tuple[object, list[ClauseRun]]] = {}
+        self._durations: dict[Path, tuple[object, dict[str, Duration | None]]] = {}
         self._traced: dict[Path, tuple[tuple[str, int], frozenset[str]]] = {}
 
     def of(self, uri: str) -> RunStore:
@@ -48,14 +52,29 @@ class Stores:
         The database is read again only if it has changed.
         """
         database = self.of(uri).database
-        files = (database, database.with_name(database.name + LOG))
-        now = tuple(file_state(path_to_uri(file)) for file in files)
+        now = _state(database)
         known = self._histories.get((database, clause))
         if known is None or known[0] != now:
             if len(self._histories) >= MAX_HISTORIES:
                 self._histories.clear()
             known = self._histories[database, clause] = (now, clause_history(database, clause))
         return known[1]
+
+    def estimate(self, uri: str, counts: Mapping[str, int]) -> TimeEstimate:
+        """Estimate how long a number of executions of each variant takes on all cores. Raises ``DatabaseProblem``.
+
+        The database is read again only if it has changed.
+        """
+        database = self.of(uri).database
+        now = _state(database)
+        if database not in self._durations or self._durations[database][0] != now:
+            self._durations[database] = (now, {})
+        durations = self._durations[database][1]
+        missing = [variant for variant in counts if variant not in durations]
+        if missing:
+            found = usual_durations(database, missing)
+            durations.update((variant, found.get(variant)) for variant in missing)
+        return estimate_from(counts, {iri: known for iri in counts if (known := durations[iri])})
 
     def _traced_in(self, run: StoredRun) -> frozenset[str]:
         try:
@@ -99,3 +118,9 @@ class Stores:
                 self._folder = self._folder or Path(tempfile.mkdtemp(prefix="robbdd-"))
                 self._own[root] = RunStore(self._folder / str(len(self._own) + 1))
             return self._own[root]
+
+
+def _state(database: Path) -> object:
+    """Return a value that changes whenever the database does."""
+    files = (database, database.with_name(database.name + LOG))
+    return tuple(file_state(path_to_uri(file)) for file in files)

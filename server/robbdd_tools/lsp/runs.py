@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.active_run import ActiveRun
 from robbdd_tools.lsp.document_models import reason
+from robbdd_tools.lsp.judged_scenarios import project_of
 from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_follower import RunFollower
 from robbdd_tools.lsp.run_options import RunOptions
-from robbdd_tools.lsp.run_request import RunText, plan_run
+from robbdd_tools.lsp.run_request import PlannedRun, RunText, plan_run
 from robbdd_tools.lsp.trust import refuse_run
 from robbdd_tools.run.debugging import check_debugger, free_port
 from robbdd_tools.run.pictures import NoPictures, render_violations
 from robbdd_tools.workbench.rerun import NothingFailed
 from robbdd_tools.workbench.run import begin_run
+from robbdd_tools.workbench.time_estimate import estimate
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -59,15 +62,32 @@ def cancel_run(ls: RobbddServer) -> None:
         ls.run.cancel()
 
 
+async def estimate_run(ls: RobbddServer, argument: dict[str, Any]) -> dict[str, Any]:
+    """Return the estimated duration of a run, or the reason why there would be no run. Nothing is executed."""
+    try:
+        options = RunOptions.of(argument)
+        planned = await _planned(ls, options)
+        scenarios, database = planned.plan.specs(repeat=planned.repeat), ls.stores.of(options.uri).database
+        found = await asyncio.to_thread(estimate, scenarios, database, options.jobs)
+    except (RobbddError, OSError) as error:
+        return {"problem": reason(error)}
+    return {**asdict(found), "words": str(found)}
+
+
+async def _planned(ls: RobbddServer, options: RunOptions) -> PlannedRun:
+    project = project_of(options.uri)
+    results = [scenario for scenario in ls.results if scenario.project == project]
+    defaults = ls.settings.run_defaults(options.uri)
+    return await ls.in_background(
+        lambda snapshot: plan_run(snapshot, ls.convert, options, results, defaults), options.uri
+    )
+
+
 async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     """Plan a run on the texts of open files, and prepare its folder. Raises ``RobbddError`` and ``OSError``."""
     if options.debug:
         check_debugger()
-    results = list(ls.results)
-    defaults = ls.settings.run_defaults(options.uri)
-    planned = await ls.in_background(
-        lambda snapshot: plan_run(snapshot, ls.convert, options, results, defaults), options.uri
-    )
+    planned = await _planned(ls, options)
     place, remark = await asyncio.to_thread(ls.stores.begin, options.uri)
     if remark:
         ls.warn(remark)

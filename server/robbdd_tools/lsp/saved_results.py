@@ -15,7 +15,7 @@ from robbdd_tools.features.run_verdicts import JudgedScenario, as_json, from_jso
 
 FOLDER = ".robbdd"
 FILE = "results.json"
-VERSION = 1
+VERSION = 2
 _LOG = logging.getLogger(__name__)
 
 

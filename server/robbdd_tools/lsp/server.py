@@ -20,13 +20,15 @@ from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.printable import printable
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.run_verdicts import NOTHING, Results
+from robbdd_tools.features.project_findings import ProjectFindings
+from robbdd_tools.features.run_verdicts import Findings, Results
 from robbdd_tools.lsp.analysis_thread import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
+from robbdd_tools.lsp.judged_scenarios import project_of
 from robbdd_tools.lsp.latest_wins import LatestWins
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
@@ -35,6 +37,7 @@ from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.run_stores import Stores
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
+from robbdd_tools.lsp.store_watching import StoreWatching
 from robbdd_tools.lsp.stored_verdicts import StoredVerdicts
 from robbdd_tools.lsp.user_errors import UserErrors, model_errors
 from robbdd_tools.lsp.workspace_diagnostics import WorkspaceDiagnostics
@@ -66,12 +69,13 @@ class RobbddServer(LanguageServer):
         self.trusted = True
         """Whether workspace code may be run; the client may set ``trusted`` to false at start."""
         self.results = Results()
-        self.findings = NOTHING
+        self._findings = ProjectFindings()
         """The displayed results of runs."""
         self.run: ActiveRun | None = None
         self.run_numbers = count(1)
         self.stores = Stores()
         self.stored_verdicts = StoredVerdicts(self)
+        self.store_watching = StoreWatching(self)
         self.shows_pictures = False
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
@@ -242,10 +246,14 @@ class RobbddServer(LanguageServer):
     async def show_changed(self) -> None:
         """Show the results that are waiting to be shown."""
         changed, self._changed = self._changed, {}
-        self.findings = self.results.findings(self.rejudging.executions)
+        self._findings = ProjectFindings(self.results, self.rejudging.executions)
         self.refreshes.want(HINTS, LENSES)
         await self._show_diagnostics(changed)
         await self.user_errors.refresh()
+
+    def findings_of(self, snapshot: Snapshot, uri: str) -> Findings:
+        """Return the shown results that concern a file."""
+        return self._findings.of_file(snapshot, uri, project_of(uri))
 
     async def _show_diagnostics(self, uris: Iterable[str]) -> None:
         """Send the diagnostics of some files to the client again."""
@@ -313,7 +321,7 @@ class RobbddServer(LanguageServer):
 
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._shapes.valid(snapshot, uri)]
-            found += clause_diagnostics(snapshot, uri, self.findings, brief=self.shows_pictures)
+            found += clause_diagnostics(snapshot, uri, self.findings_of(snapshot, uri), brief=self.shows_pictures)
             document = document_of(snapshot, uri)
             shown = [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
             return document.version, [*shown, *model_errors(snapshot, self.convert, uri, broken)]

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Results
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, with_cause
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 from robbdd_tools.lsp.saved_results import load_results, save_results
 from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.readable import clause_title, readable
@@ -67,14 +67,16 @@ class StoredVerdicts:
         # A run in progress is newer than the kept results.
         in_progress = list(ls.run.judged.values()) if ls.run is not None else []
         for scenario in in_progress:
-            results.drop(scenario.variant, scenario.variation, scenario.execution)
+            results.drop(scenario.scenario_key, scenario.execution)
         results.add(in_progress)
         ls.results = results
         ls.show_results(ls.opened())
         ls.rejudging.results_changed()
         models = dict.fromkeys(scenario.model for scenario in kept.scenarios)
         paths = [*ls.folders(), *filter(None, map(uri_to_path, models))]
-        await self.refresh([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
+        stores = [*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)]
+        await self.refresh(stores)
+        await ls.store_watching.watch(stores)
 
     async def loaded(self) -> None:
         """Wait until the results of earlier runs are loaded."""
@@ -85,6 +87,7 @@ class StoredVerdicts:
         await self.loaded()
         paths = filter(None, map(uri_to_path, uris))
         stores = {store.folder: store for store in map(store_beside, paths)}
+        await self._server.store_watching.watch(stores.values())
         await self.refresh([store for folder, store in stores.items() if folder not in self._known])
 
     async def refresh(self, stores: Iterable[RunStore]) -> None:
@@ -143,10 +146,13 @@ def _found(run: StoredRun) -> FoundRun:
     if results is None:
         return FoundRun((), texts.some_repetitions)
     vacuous = results.vacuous()
+    projects = {text.uri: project_of(text.uri) for text in named.values()}
     for index, result in enumerate(results.scenarios):
         if result.finished is not None:
             text = named[result.spec.model]
-            scenario = judged_scenario(result.spec, text.uri, text.digests, run=run.number, index=index, seed=seed)
+            scenario = judged_scenario(
+                result.spec, text.uri, text.digests, projects[text.uri], run=run.number, index=index, seed=seed
+            )
             causes = Causes()
             for position, clause in enumerate(result.spec.clauses):
                 judged = result.judged.get(clause.line)

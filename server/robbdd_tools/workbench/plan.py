@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.judged_text import JudgedTexts
     from robbdd_tools.workbench.model import Model, ModelFile
     from robbdd_tools.workbench.run import Run
+    from robbdd_tools.workbench.time_estimate import TimeEstimate
 
 NO_SCENARIO_FITS = "no scenario fits the selection"
 MODELS_CHANGED = "the model no longer has these scenarios"
@@ -191,6 +192,18 @@ class Plan:
     def specs(self, *, repeat: int | None = None) -> Iterator[ScenarioSpec]:
         """Yield the scenarios as ``prepare`` does, without writing files. They name no feature."""
         return specs_of(self._requests_with(self.selection.seed, repeat))
+
+    def estimate(self, *, repeat: int | None = None, jobs: int | None = None) -> TimeEstimate:
+        """Estimate the duration of a run from stored executions of the same variants. Raises ``DatabaseProblem``.
+
+        The executions are those in the store of the model's project. ``repeat`` and ``jobs`` are those of ``run``.
+        """
+        from robbdd_tools.run.store import store_beside
+        from robbdd_tools.workbench.time_estimate import estimate
+
+        return estimate(
+            self.specs(repeat=repeat), store_beside(self.path or Path()).database, Policy.of(jobs=jobs).jobs
+        )
 
     def _requests_with(self, seed: int | None, repeat: int | None) -> list[RunRequest]:
         return [_with(request, seed, repeat) for request in self.requests]
