@@ -10,6 +10,7 @@ from features.test_clause_results import HOLDS, IRI, NS, VIOLATED
 from kit import MODEL, SCENE, Fixture, fixture
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.policy_results import policy_hints
+from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import Findings, JudgedScenario, Judgement, Results, digests_of
 
 X = "https://example.org/x/"
@@ -52,7 +53,7 @@ def judged(**outcomes: Judgement) -> Findings:
         found.execution, found.execution_digest, found.finished = iri, digests.executions.get(iri, ""), True
         found.judge(IRI, replace(judgement, digest=digests.clauses[IRI]))
         results.add([found])
-    return results.findings()
+    return findings_of(results)
 
 
 def hints(findings: Findings, text: Fixture | None = None) -> list[str]:

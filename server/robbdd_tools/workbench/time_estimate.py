@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.run.execution_times import Duration, usual_durations
-from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.run_policy import Policy
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
