@@ -65,9 +65,10 @@ class Window:
 
     def watched_stores(self) -> list[str]:
         """Return the folders that the server watches in addition to the open ones."""
-        options = (entry.register_options for entry in self.registered)
-        patterns = (watcher.glob_pattern for one in options for watcher in getattr(one, "watchers", ()))
-        return [str(pattern.base_uri) for pattern in patterns if isinstance(pattern, types.RelativePattern)]
+        watchers = [
+            watcher for entry in self.registered for watcher in plain(entry.register_options).get("watchers", ())
+        ]
+        return [pattern["baseUri"] for one in watchers if isinstance(pattern := one["globPattern"], dict)]
 
 
 @pytest.fixture

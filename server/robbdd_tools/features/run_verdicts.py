@@ -97,7 +97,7 @@ class JudgedScenario:
 
     @property
     def scenario_key(self) -> ScenarioKey:
-        """What identifies the scenario among all results."""
+        """The identity of the scenario among all results."""
         return self.project, self.variant, self.variation
 
     @property
