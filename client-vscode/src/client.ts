@@ -153,9 +153,8 @@ export class Server implements vscode.Disposable {
   }
 
   /**
-   * Run a command of the server, from a code lens or the palette, and handle its answer. Show a message and return
-   * `problem` if there is no server or it refuses. A run without a `token` gets one, so that its end can be
-   * distinguished.
+   * Run a command of the server and handle its answer. Show a message and return `problem` if there is no server or it
+   * refuses. A run without a `token` gets one, so that its end can be distinguished.
    */
   async execute(command: string, target: unknown): Promise<unknown> {
     const argument = RUNNING.has(command) && hasUri(target) ? this.named(target) : target;

@@ -30,7 +30,7 @@ const TRACE = {
   ...{ shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [CLAUSE] },
 } as unknown as Trace;
 const LINK = linkTo(MOMENT, "vscode", "robbdd.robbdd-workbench");
-/** Where the folder of the stranger who opens the link is. */
+/** Where the folder of the person who opens the link is. */
 const ELSEWHERE = Uri.parse("file:///home/other/checkout");
 
 test("a link names the moment, whether or not the editor has decoded it", () => {
@@ -75,7 +75,7 @@ test("a moment is within its trace, and only of a stored execution with a seed",
 });
 
 /** A window with a folder, in whose store are these executions, by run. */
-function stranger(...stored: readonly Trace[]): void {
+function otherWindow(...stored: readonly Trace[]): void {
   openWindow();
   workspace.workspaceFolders = [{ uri: ELSEWHERE }];
   LanguageClient.answers.set("robbdd/trace", (params) => {
@@ -97,8 +97,8 @@ async function firstMessage(panel: WebviewPanel | undefined): Promise<unknown> {
   return panel?.posted[0];
 }
 
-test("a stranger who has the run sees the same moment", async () => {
-  stranger(TRACE);
+test("anybody who has the run sees the same moment", async () => {
+  otherWindow(TRACE);
   const panel = await opened(LINK);
   assert.equal(panel?.title, "Replay part-to-bin 5 (run 3)");
   const { recording, clause, time } = (await firstMessage(panel)) as Readonly<Record<string, unknown>>;
@@ -108,7 +108,7 @@ test("a stranger who has the run sees the same moment", async () => {
 });
 
 test("where the number is another run's, the same execution of another run is shown, and that is said", async () => {
-  stranger({ ...TRACE, scenario: { ...SCENARIO, seed: 99 } }, TRACE);
+  otherWindow({ ...TRACE, scenario: { ...SCENARIO, seed: 99 } }, TRACE);
   LanguageClient.answers.set("robbdd/trace", (params) => {
     return "run" in (params as object) ? { ...TRACE, scenario: { ...SCENARIO, seed: 99 } } : { ...TRACE, run: 8 };
   });
@@ -117,20 +117,20 @@ test("where the number is another run's, the same execution of another run is sh
 });
 
 test("an execution that is not stored here is never replaced by another one", async () => {
-  stranger({ ...TRACE, scenario: { ...SCENARIO, seed: 99 } });
+  otherWindow({ ...TRACE, scenario: { ...SCENARIO, seed: 99 } });
   assert.equal(await opened(LINK), undefined);
   assert.match(editor.problems.join(), /seed 12\) that no run stored here has/);
 });
 
 test("a link to a model of no open folder says what to open", async () => {
-  stranger(TRACE);
+  otherWindow(TRACE);
   editor.missing.add(Uri.joinPath(ELSEWHERE, MOMENT.model).toString());
   assert.equal(await opened(LINK), undefined);
   assert.match(editor.problems.join(), /Open the folder of that project/);
 });
 
 test("a link is pasted into a box, which refuses everything else", async () => {
-  stranger(TRACE);
+  otherWindow(TRACE);
   editor.typed.push("https://example.org/", LINK);
   await command("robbdd.openReplayLink", undefined);
   assert.deepEqual(editor.problems.splice(0), ["This is no link to a replay."]);
@@ -139,7 +139,7 @@ test("a link is pasted into a box, which refuses everything else", async () => {
 });
 
 test("the page's wish for a link fills the clipboard, for a model of an open folder", async () => {
-  stranger(TRACE);
+  otherWindow(TRACE);
   const panel = await opened(LINK);
   await firstMessage(panel);
   panel?.fromPage.fire({ type: "link", time: 1.5, clause: 0 });
@@ -155,7 +155,7 @@ test("the page's wish for a link fills the clipboard, for a model of an open fol
 });
 
 test("a picture that the page may not copy is saved", async () => {
-  stranger(TRACE);
+  otherWindow(TRACE);
   const panel = await opened(LINK);
   panel?.fromPage.fire({ type: "picture", data: Buffer.from("png").toString("base64") });
   const target = Uri.joinPath(ELSEWHERE, "part-to-bin-5.png").toString();

@@ -35,7 +35,7 @@ def run() -> RunResults:
     return found
 
 
-def told(scenarios: list[ImportedScenario]) -> list[object]:
+def reported(scenarios: list[ImportedScenario]) -> list[object]:
     return [
         (one.story, one.variation, one.values, [(c.verdict, c.margin, c.said, c.sentence) for c in one.clauses])
         for one in scenarios
@@ -44,7 +44,7 @@ def told(scenarios: list[ImportedScenario]) -> list[object]:
 
 def test_json_and_junit_give_the_same_but_for_consequences_which_junit_folds() -> None:
     from_json, from_junit = read_results(json.dumps(run().as_json())), read_results(junit(run()))
-    assert told(from_json)[0] == told(from_junit)[0]
+    assert reported(from_json)[0] == reported(from_junit)[0]
     assert [clause.said for clause in from_json[1].clauses] == ["? unknown: the clause was never judged"] * 3
     assert [clause.said for clause in from_junit[1].clauses] == [
         "? unknown: the clause was never judged",
@@ -92,7 +92,7 @@ def test_json_and_junit_give_the_same_but_for_consequences_which_junit_folds() -
         ("[" * 100_000, 1, "nested too deeply"),
     ],
 )
-def test_a_broken_file_is_told_with_its_place(text: str, line: int, words: str) -> None:
+def test_a_broken_file_is_reported_with_its_place(text: str, line: int, words: str) -> None:
     with pytest.raises(BrokenResults, match=re.escape(words)) as found:
         read_results(text)
     assert found.value.line == line

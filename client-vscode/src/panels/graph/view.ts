@@ -1,91 +1,31 @@
 // The graph of a model next to its text: it follows edits and the cursor, and links back to the text.
 import * as vscode from "vscode";
-import { LANGUAGES, type Server } from "../../client";
+import type { Server } from "../../client";
 import { innermost } from "../../places";
-import { isRecord } from "../../values";
-import { Panel, beside } from "../panel";
+import { type FilePanel, FilePanels } from "../filePanels";
+import { Panel } from "../panel";
 import { reveal } from "../reveal";
 import { type GraphPicture, isGraphPicture, remark } from "./answer";
 import type { ToGraph } from "./messages";
 
-const TYPE = "robbdd.graph";
 /** Milliseconds without an edit before a picture is updated. */
 const PAUSE = 250;
 
-export class GraphView implements vscode.Disposable {
-  /** By the URI of the model. */
-  private readonly graphs = new Map<string, Graph>();
-  private readonly subscriptions: vscode.Disposable[];
-
-  constructor(
-    private readonly server: Server,
-    private readonly extension: vscode.Uri,
-  ) {
-    this.subscriptions = [
-      vscode.window.registerWebviewPanelSerializer(TYPE, {
-        deserializeWebviewPanel: async (view, state: unknown) => {
-          await server.begin();
-          await this.restore(view, state);
-        },
-      }),
-      vscode.workspace.onDidChangeTextDocument(({ document }) => {
-        if (LANGUAGES.includes(document.languageId)) {
-          this.refreshSoon();
-        }
-      }),
+export class GraphView extends FilePanels<Graph> {
+  constructor(server: Server, extension: vscode.Uri) {
+    super(server, "robbdd.graph", "Graph", (view, uri, restored) => new Graph(view, extension, server, uri, restored));
+    this.subscriptions.push(
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
-        for (const graph of this.graphs.values()) {
+        for (const graph of this.panels.values()) {
           graph.moved(textEditor);
         }
       }),
-    ];
-  }
-
-  /** Show the graph of a model next to it. */
-  open(model: vscode.Uri): void {
-    const uri = model.toString();
-    const open = this.graphs.get(uri);
-    if (open === undefined) {
-      this.adopt(beside(TYPE, `Graph ${fileName(model)}`), uri, false);
-    } else {
-      open.panel.view.reveal(undefined, true);
-    }
-  }
-
-  /** Update all graphs, because a text or the server has changed. */
-  refreshSoon(): void {
-    for (const graph of this.graphs.values()) {
-      graph.loadSoon();
-    }
-  }
-
-  dispose(): void {
-    for (const part of [...this.subscriptions, ...[...this.graphs.values()].map(({ panel }) => panel)]) {
-      part.dispose();
-    }
-  }
-
-  private restore(view: vscode.WebviewPanel, state: unknown): Promise<void> {
-    if (isRecord(state) && typeof state["uri"] === "string" && !this.graphs.has(state["uri"])) {
-      this.adopt(view, state["uri"], true);
-    } else {
-      view.dispose();
-    }
-    return Promise.resolve();
-  }
-
-  private adopt(view: vscode.WebviewPanel, uri: string, restored: boolean): void {
-    const graph = new Graph(view, this.extension, this.server, uri, restored);
-    this.graphs.set(uri, graph);
-    view.onDidDispose(() => {
-      graph.stop();
-      this.graphs.delete(uri);
-    });
+    );
   }
 }
 
 /** One panel with the graph of one model. */
-class Graph {
+class Graph implements FilePanel {
   readonly panel: Panel<ToGraph>;
   private picture: GraphPicture | undefined;
   private highlighted: string | null = null;
@@ -185,8 +125,4 @@ class Graph {
       void reveal(source.uri, source.range, this.panel.view.viewColumn);
     }
   }
-}
-
-function fileName(uri: vscode.Uri): string {
-  return uri.path.replace(/^.*\//, "");
 }

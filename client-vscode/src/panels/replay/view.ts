@@ -62,7 +62,7 @@ export class ReplayView implements vscode.Disposable {
     this.show(trace, recording, { clause: clauseOf(target) }, column);
   }
 
-  /** Show the moment that a link names, of the user or of a stranger; without a link, let the user paste one. */
+  /** Show the moment that a link names, from the user or from anybody else; without a link, let the user paste one. */
   async openLink(link: string | undefined): Promise<void> {
     const text = link ?? (await askLink());
     const moment = text === undefined ? undefined : momentIn(text);
