@@ -42,7 +42,7 @@ COMMANDS = (
 )
 STARTING = (
     "check .",
-    *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge", "doctor"}),
+    *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge", "doctor", "dap"}),
 )
 """Commands that start other processes. ``PYTHONPATH`` is removed before it is known which command is executed."""
 AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."

@@ -36,8 +36,10 @@ BEGUN = "begun"
 class QuickAgent:
     """Behaves as ``run.launch.Agent``."""
 
-    def __init__(self, folder: Path, number: int, *, log_limit: int, timeout: float, debug: int | None) -> None:
-        del log_limit, timeout, debug
+    def __init__(
+        self, folder: Path, number: int, *, log_limit: int, timeout: float, debug: int | None, pausing: bool
+    ) -> None:
+        del log_limit, timeout, debug, pausing
         self.pid = number
         self._begun = folder.parents[2] / BEGUN
         self._orders: SimpleQueue[int | None] = SimpleQueue()

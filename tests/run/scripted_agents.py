@@ -52,7 +52,10 @@ class Stage:
     def monotonic(self) -> float:
         return self.now
 
-    def agent(self, folder: Path, number: int, *, log_limit: int, timeout: float, debug: int | None) -> ScriptedAgent:
+    def agent(
+        self, folder: Path, number: int, *, log_limit: int, timeout: float, debug: int | None, pausing: bool
+    ) -> ScriptedAgent:
+        assert not pausing
         self.agents.append(ScriptedAgent(self, folder, number, log_limit, timeout, debug))
         return self.agents[-1]
 

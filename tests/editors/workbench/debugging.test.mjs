@@ -34,7 +34,7 @@ step("F5 simulates the model, and a breakpoint on a clause pauses it there with 
 
 step("the scene is shown in 3D at the pause, and follows a step", async () => {
   await workbench.command("RobBDD: Show the Paused Scene");
-  const readout = workbench.webview("Paused").locator("output.readout");
+  const readout = workbench.webview("Paused").locator(".readout");
   await readout.filter({ hasText: /\d s/ }).waitFor();
   shown = await readout.innerText();
   const [now, end] = shown.split(" / ");
