@@ -1,0 +1,75 @@
+// Failures of different kinds: the cause of each can be read beside its clause, without a click.
+import assert from "node:assert/strict";
+import { SAMPLES } from "./harness/checkout.mjs";
+import { EXECUTIONS, FAILURES, writeFailures } from "./harness/failures.mjs";
+import { TRY, eventually } from "./harness/patience.mjs";
+import { story } from "./harness/story.mjs";
+import { verdictAt } from "./harness/verdicts.mjs";
+import { EDITOR } from "./harness/workbench.mjs";
+
+/** Prefixes, addresses and generated names are for machines. */
+const FOR_MACHINES = /https?:|\b(?:env|t|t-\d+|sim|exec):\w|when-bhv|\.then\.|!=/;
+
+/** @type {import("./harness/session.mjs").Session} */
+let session;
+/** @type {import("./harness/workbench.mjs").Workbench} */
+let workbench;
+
+const step = story("causes", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
+}, {
+  workspace: SAMPLES,
+  settings: { "testing.automaticallyOpenPeekView": "never" },
+  prepare: writeFailures,
+});
+
+step("executions that fail for different reasons run to their end", async () => {
+  await workbench.openFile(EXECUTIONS);
+  const { scenarios } = await session.runOf(() => workbench.command("RobBDD: Run Scenarios of This File"));
+  assert.equal(scenarios.length, Object.keys(FAILURES).length);
+  assert.deepEqual(scenarios.filter(({ verdict }) => verdict === "holds").map(({ name }) => name), []);
+  await workbench.changeScheme("dark");
+});
+
+for (const [name, { line, cause, margin }] of Object.entries(FAILURES)) {
+  step(`${name}: the cause is in sight, at the line of its clause`, async () => {
+    await workbench.openFile(`${name}.bdd`);
+    await eventually(async () => {
+      const [message, ...others] = (await workbench.page.evaluate(messages, EDITOR)).filter(({ cut }) => !cut);
+      if (message === undefined) {
+        // The message is out of sight after a long line, and goes with the run: then the verdict has the cause.
+        await verdictAt(workbench, line, margin ?? new RegExp(cause.source.slice(1).replace(/ \\\(.*/, "")), { timeout: TRY / 5 });
+      } else {
+        assert.match(message.text, cause, "the cause comes first");
+        assert.doesNotMatch(message.text, FOR_MACHINES);
+        assert.match(message.line, line);
+        assert.deepEqual(others, [], "consequences have no message of their own");
+      }
+    });
+    await workbench.screenshot(`causes-${name}`);
+  });
+}
+
+step("they can be read in light colours, too", async () => {
+  await workbench.changeScheme("light");
+  await workbench.openFile("unreachable.bdd");
+  await workbench.page.locator(`${EDITOR} .test-error-content-widget`).first().waitFor();
+  const { words, side } = await verdictAt(workbench, /placed:/, /because/);
+  assert.deepEqual([words, side], ["? because of the behaviour", "after"]);
+  await workbench.screenshot("causes-unreachable-light");
+});
+
+/** Runs in the page: the messages in an editor, each with the text of its line, and whether its end is out of sight. */
+function messages(editor) {
+  const plain = (element) => element.textContent.replaceAll("\u00a0", " ");
+  const edge = document.querySelector(editor).getBoundingClientRect().right;
+  return [...document.querySelectorAll(`${editor} .test-error-content-widget`)].map((widget) => {
+    const { top, bottom, right } = widget.getBoundingClientRect();
+    const line = [...document.querySelectorAll(`${editor} .view-line`)].find((one) => {
+      const place = one.getBoundingClientRect();
+      return place.top < (top + bottom) / 2 && (top + bottom) / 2 < place.bottom;
+    });
+    return { text: plain(widget), line: line === undefined ? "" : plain(line), cut: right > edge };
+  });
+}
