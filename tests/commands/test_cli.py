@@ -194,7 +194,7 @@ def test_a_clause_that_physics_contradicts_is_violated(tmp_path: Path) -> None:
 
 
 @pytest.mark.physics
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no POSIX signals")
 def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     shutil.copytree(PICKPLACE.parent, tmp_path / "pickplace")
     model, report = tmp_path / "pickplace" / PICKPLACE.name, tmp_path / "out.json"

@@ -19,7 +19,7 @@ from kit import EXAMPLES, default_signals, make_endless, schema_errors
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RunStore
 
-pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")]
+pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="Windows has no POSIX signals")]
 ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
 MODEL = "pickplace.bdd"
 

@@ -106,7 +106,7 @@ WAYS = {
 }
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals in words")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows names no signals")
 @pytest.mark.parametrize("way", list(WAYS))
 def test_code_that_ends_its_process_or_never_returns_is_reported_at_its_line(cell: Path, way: str) -> None:
     expression, words = WAYS[way]
@@ -136,7 +136,7 @@ def test_code_that_ends_its_process_or_never_returns_is_reported_at_its_line(cel
     assert [path.suffix for path in logs.iterdir() if path.suffix != ".log"] == []
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows names no signals")
 def test_code_whose_process_is_killed_is_named_with_its_definition(cell: Path) -> None:
     """As the system does where memory runs out: no handler sees it."""
     code = cell / "carrying.py"
@@ -150,7 +150,7 @@ def test_code_whose_process_is_killed_is_named_with_its_definition(cell: Path) -
     assert "the process ended with signal SIGKILL (often: memory ran out)\n" in ran.stdout
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals in words")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows names no signals")
 def test_a_step_that_ends_its_process_leads_to_the_file_that_the_user_edits(tmp_path: Path) -> None:
     folder = shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
     steps = folder / "steps" / "pickplace_steps.py"
@@ -165,7 +165,7 @@ def test_a_step_that_ends_its_process_leads_to_the_file_that_the_user_edits(tmp_
     assert "2 scenarios: 1 hold, 0 violated, 1 unknown" in ran.stdout
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals in words")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows names no signals")
 def test_steps_that_end_their_process_while_they_are_loaded_are_reported_at_their_line(tmp_path: Path) -> None:
     folder = shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
     steps = folder / "steps" / "pickplace_steps.py"

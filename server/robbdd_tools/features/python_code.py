@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import UnreadableFile, load_text, path_to_uri, uri_to_path
 from robbdd_tools.base.limits import SOURCE_SIZE
-from robbdd_tools.base.python_modules import attribute_place, find_module, module_outline, module_place, modules_in
+from robbdd_tools.base.python_modules import (
+    PythonPlace,
+    attribute_place,
+    find_module,
+    module_outline,
+    module_place,
+    modules_in,
+)
 from robbdd_tools.checks.python_source import code_names
 from robbdd_tools.features.markdown import MAX_LINES, code, fenced, literal
 from robbdd_tools.features.outside_place import OutsidePlace
@@ -53,11 +60,8 @@ def code_choices(uri: str, before: str, word: str) -> Iterator[tuple[str, str, s
 
 def describe_code(uri: str, name: str) -> str | None:
     """Describe Python code ``module:attribute`` for a model: its signature and its docstring."""
-    own = uri_to_path(uri)
     module, _, attribute = name.partition(":")
-    if own is None:
-        return None
-    place = attribute_place(module, attribute, own.parent) if attribute else module_place(module, own.parent)
+    place = _place(uri, module, attribute)
     return None if place is None else _described(place, module, attribute)
 
 
@@ -79,15 +83,20 @@ def code_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, str] | Non
 
 def code_definition(uri: str, name: str) -> OutsidePlace | None:
     """Return the place in a Python file that defines ``module:attribute``; its start for a module."""
-    own = uri_to_path(uri)
     module, _, attribute = name.partition(":")
-    if own is None:
-        return None
-    place = attribute_place(module, attribute, own.parent) if attribute else module_place(module, own.parent)
+    place = _place(uri, module, attribute)
     if place is None:
         return None
     span = Span(0, 0) if place.name is None else Span(place.name.start, place.name.end)
     return OutsidePlace(path_to_uri(place.path), _text(place.path), span)
+
+
+def _place(uri: str, module: str, attribute: str) -> PythonPlace | None:
+    """Return the place of an attribute, or of the module if it is empty, as a model sees it."""
+    own = uri_to_path(uri)
+    if own is None:
+        return None
+    return attribute_place(module, attribute, own.parent) if attribute else module_place(module, own.parent)
 
 
 def _text(path: Path) -> str:
