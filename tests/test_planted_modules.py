@@ -42,9 +42,9 @@ COMMANDS = (
 )
 STARTING = (
     "check .",
-    *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge", "doctor", "dap"}),
+    *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge"}),
 )
-"""Commands that start other processes. ``PYTHONPATH`` is removed before it is known which command is executed."""
+"""Commands that start processes, one of each kind. ``PYTHONPATH`` goes before it is known which command is executed."""
 AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."
 FINDINGS = 1
 

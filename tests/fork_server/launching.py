@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from execnet.gateway_io import popen_bootstrapline
+
 REAL = frozenset({"robbdd_tools.agent.render_run"})
 """Modules that load the simulator with another graphics back end than the server."""
 
@@ -27,5 +29,18 @@ def interpreter_command(address: str) -> Callable[..., list[str]]:
             return [sys.executable, "-P", option, name, *arguments]
         run = f"from runpy import run_module; run_module({name!r}, run_name='__main__', alter_sys=True)"
         return [*launch_command(address, name if option == "-c" else run), *arguments]
+
+    return command
+
+
+WORKER_STARTED_BY = "execnet.gateway_io.popen_args"
+"""The function that returns the command of each worker that pytest-xdist starts."""
+
+
+def worker_command(address: str) -> Callable[[object], list[str]]:
+    """Return what takes the place of ``WORKER_STARTED_BY``: workers on this machine are forks."""
+
+    def command(_: object) -> list[str]:
+        return launch_command(address, popen_bootstrapline)
 
     return command

@@ -28,7 +28,7 @@ from pygls.lsp._base_server import BaseLanguageServer
 
 from fork_server.converter import compile_all, shared_converter
 from fork_server.launch import LENGTH, STATUS
-from fork_server.launching import STARTED_BY, interpreter_command
+from fork_server.launching import STARTED_BY, WORKER_STARTED_BY, interpreter_command, worker_command
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pickplace"
 LOADED = (
@@ -37,6 +37,8 @@ LOADED = (
     "numpy",
     "pytest",
     "pytest_lsp",
+    "xdist.plugin",
+    "xdist.remote",
     "robbdd_tools.agent.execute_requests",
     "robbdd_tools.agent.runner",
     "robbdd_tools.cli",
@@ -193,8 +195,9 @@ def code_of_fork(address: str) -> str | None:
         for name in LOADED:
             import_module(name)
     warm_up()
-    # What a fork starts is a fork, too: agents and the processes of a language server.
+    # What a fork starts is a fork, too: agents, the processes of a language server, workers of pytest.
     patch(STARTED_BY, interpreter_command(address)).start()
+    patch(WORKER_STARTED_BY, worker_command(address)).start()
     compile_all()
     # The converter is the second argument that has a default.
     defaults = BaseLanguageServer.__init__.__defaults__

@@ -20,7 +20,7 @@ from kit import ROOT
 SEED = 1
 CASES = {"parser": 15, "requests": 1, "channel": 1, "store": 3, "query": 4, "formatter": 8}
 """Cases of each target here; ten of the others."""
-SECONDS = 15.0
+SECONDS = 8.0
 
 
 @pytest.mark.parametrize("name", list(TARGETS))

@@ -59,6 +59,7 @@ def test_wheel_and_source_distribution(checkouts: tuple[Path, Path], tmp_path: P
     assert built == digests(tmp_path / "1")
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not (CLIENT / "node_modules").is_dir(), reason="needs `make setup`")
 def test_vsix(checkouts: tuple[Path, Path]) -> None:
     packed: list[bytes] = []

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from contextlib import closing
 from pathlib import Path
-from time import monotonic
+from time import monotonic, sleep
 
 from robbdd_tools.run.store import FOLDER, NoSuchRun, RunStore, StoredRun
 from run.killed import BEGUN, COUNT, JOBS
@@ -46,6 +46,7 @@ def ends_before(process: subprocess.Popen[str], folder: Path, results: int) -> b
         if len(printed(folder)) >= results:
             _kill(process)
             return False
+        sleep(0.002)
     assert process.returncode == 0
     return True
 

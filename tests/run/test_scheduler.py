@@ -34,7 +34,7 @@ pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", r
 HOLDS = ("given", f'"{CUBE}" is located at "env:bench_ws" before event "t:end"')
 VIOLATED = ("given", f'"{CUBE}" is located at "env:bin1_ws" before event "t:end"')
 USER_STEPS = """
-import os, signal
+import os, signal, time
 from behave import given
 
 @given("a hang")
@@ -42,7 +42,7 @@ def hang(context):
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM, signal.SIGINT})
     os.close(os.open(os.environ["ROBBDD_TEST_FIFO"], os.O_WRONLY))
     while True:
-        pass
+        time.sleep(60)
 
 @given("an exit")
 def leave(context):
