@@ -22,6 +22,7 @@ from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
 
 SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "20"))
+SCENARIO = re.compile(r"^ +Scenario [^{]*\{.*?^ {8}\}\n", re.MULTILINE | re.DOTALL)
 DECLARATION = re.compile(r"^(?=\S)(?![})|])", re.MULTILINE)
 MAIN, LAB = f"{FOLDER}main.bdd", f"{FOLDER}lab.scene"
 PREFIXES = """@prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -47,6 +48,7 @@ def _pairs() -> list[dict[str, str]]:
     second = TEMPLATE.replace("fetch", "bring").replace("on-bench", "on-b").replace("in-tray", "in-t")
     both = MODEL + second + STORY.replace("fetch", "bring").replace("bench-to-tray", "again")
     pairs = [{"main.bdd": both, "lab.scene": SCENE}, {"main.bdd": EVERYTHING, "lab.scene": SCENE}]
+    pairs.append({"main.bdd": one_story(4), "lab.scene": SCENE})
     folders = [EXAMPLES / "pickplace", EXAMPLES / "tworobots"]
     if corpus := os.environ.get("ROBBDD_CORPUS"):
         folders.append(Path(corpus, "current"))
@@ -59,9 +61,17 @@ def _pairs() -> list[dict[str, str]]:
     return pairs
 
 
+def one_story(count: int) -> str:
+    """Return a model whose only story has many scenarios."""
+    scenario = SCENARIO.search(STORY)
+    assert scenario is not None
+    copies = (scenario[0].replace("bench-to-tray", f"bench-to-tray{number}") for number in range(count))
+    return MODEL.replace(scenario[0], "".join(copies))
+
+
 PAIRS = _pairs()
 EDIT = st.tuples(
-    st.sampled_from(["reference", "line", "declaration", "copy", "number", "word", "piece", "undo"]),
+    st.sampled_from(["reference", "line", "declaration", "copy", "scenario", "number", "word", "piece", "undo"]),
     st.floats(0, 0.999),
     st.floats(0, 0.999),
     st.booleans(),
@@ -72,7 +82,7 @@ def edited(text: str, other: str, kind: str, where: float, what: float) -> str:
     """Return a text after an edit of the kind that users make; most edits keep it valid."""
 
     def replaced(pattern: str, *choices: str) -> str:
-        places = list(re.finditer(pattern, text))
+        places = list(re.finditer(pattern, text, SCENARIO.flags))
         if not places:
             return text
         found = places[int(where * len(places))]
@@ -92,6 +102,8 @@ def edited(text: str, other: str, kind: str, where: float, what: float) -> str:
         case "copy":
             place = starts[int(what * len(starts))]
             return text[:place] + declaration + text[place:]
+        case "scenario":
+            return replaced(SCENARIO.pattern, "", *(f"{place[0]}{place[0]}" for place in SCENARIO.finditer(text)))
         case "number":
             return replaced(r"\b\d+(\.\d+)?\b", "0", "1", "2", "7")
         case "word":
@@ -158,7 +170,7 @@ def many(count: int) -> str:
 @pytest.mark.parametrize(
     ("old", "new", "most"),
     [
-        ("0.5 seconds", "0 seconds", 2),
+        ("0.5 seconds", "0 seconds", 3),
         ('"parts fetched"', '"parts brought"', 1),
         ("Scenario Template (ns=t) fetch7 ", "// a remark\nScenario Template (ns=t) fetch7 ", 1),
     ],
@@ -170,6 +182,27 @@ def test_an_edit_costs_what_it_touches_whatever_else_the_file_holds(old: str, ne
     project.open(MAIN, 2, many(20).replace(old, new, 1))
     validation.run(project.snapshot(), MAIN)
     assert validation.looked_at <= most
+
+
+def test_an_edit_in_a_story_looks_at_one_scenario() -> None:
+    text = one_story(20)
+    project, validation = opened(text), Validation()
+    assert validation.run(project.snapshot(), MAIN) == []
+    place = text.index("bench-to-tray10")
+    project.open(MAIN, 2, text[:place] + text[place:].replace("template: <fetch>", "template:  <fetch>", 1))
+    assert validation.run(project.snapshot(), MAIN) == []
+    assert validation.looked_at == 1
+
+
+def test_an_error_in_a_scenario_hides_no_finding_in_the_others() -> None:
+    text = one_story(3)
+    first, second = text.index("bench-to-tray0"), text.index("bench-to-tray1")
+    broken = text[:second] + text[second:].replace("scene: <", "scene: <nothing.", 1)
+    wrong = broken[:first] + broken[first:].replace("{ <arms.panda> }", "{ <parts.bolt> }", 1)
+    project = opened(wrong)
+    found = Validation().run(project.snapshot(), MAIN)
+    assert found == validate(build_graph(project.snapshot(), MAIN))
+    assert [wrong.count("Scenario bench", 0, entry.span.start) for entry in found] == [1]
 
 
 def test_an_edit_of_a_scene_looks_at_the_stories_that_use_it() -> None:

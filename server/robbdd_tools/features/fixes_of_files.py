@@ -105,7 +105,7 @@ def _is_needless(snapshot: Snapshot, importer: str, imported: str) -> bool:
         file = snapshot.file(uri)
         left = {uri, *reached(edges, uri)}
         for placed in file.declarations if file is not None else ():
-            if any(target not in left for target, _ in placed.targets.declarations()):
+            if any(target not in left for target, _, _ in placed.targets.declarations()):
                 return False
     return True
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -62,17 +61,13 @@ class Anchors:
         return _moved(anchored.diagnostic, fix)
 
     def _placed(self, uri: str, span: Span) -> PlacedDeclaration | None:
-        declarations = self._declarations(uri)
-        position = bisect_right(declarations, span.start, key=lambda placed: placed.offset) - 1
-        return declarations[position] if position >= 0 else None
+        file = self.snapshot.file(uri)
+        return None if file is None else file.part_at(span.start)
 
     def _offset(self, anchor: Anchor) -> int:
-        declarations = self._declarations(anchor.uri) if anchor.declaration is not None else ()
-        return next((placed.offset for placed in declarations if placed.declaration is anchor.declaration), 0)
-
-    def _declarations(self, uri: str) -> tuple[PlacedDeclaration, ...]:
-        file = self.snapshot.file(uri)
-        return () if file is None else file.declarations
+        file = None if anchor.declaration is None else self.snapshot.file(anchor.uri)
+        parts = () if file is None else file.parts()
+        return next((placed.offset for placed in parts if placed.declaration is anchor.declaration), 0)
 
 
 def _holds(placed: PlacedDeclaration, span: Span) -> bool:

@@ -117,11 +117,11 @@ class Targets(Mapping["Ref", Definition]):
         """Return the definitions of the references in each part of the declaration."""
         return tuple(Targets(self._scope, part, self._made) for part in self.resolution.parts)
 
-    def declarations(self) -> Iterator[tuple[str, int]]:
-        """Yield for each reference the document that declares its target, and the position of the declaration there."""
+    def declarations(self) -> Iterator[tuple[str, int, str]]:
+        """Yield for each reference the document that declares its target, the declaration's position, and the path."""
         for target in self._targets.values():
             file = self._scope.file(target.file)
-            yield file.document.uri, file.names.entries[target.path][target.number].declaration
+            yield file.document.uri, file.names.entries[target.path][target.number].declaration, target.path
 
 
 def define(scope: Scope, target: Target) -> Definition:

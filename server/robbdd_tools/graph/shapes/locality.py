@@ -2,7 +2,7 @@
 
 Such a shape starts at the instances of a class and follows properties forwards, so it reaches only nodes that the
 declaration uses. The whole graph is needed by a shape with an inverse path, SPARQL or explicit target nodes, and by a
-shape on nodes that several declarations share.
+shape on nodes that several declarations share, or on user stories, whose scenarios are validated one by one.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ equals disjoint lessThan lessThanOrEquals closed ignoredProperties hasValue in s
 deactivated order group defaultValue
 """
 _COMMON = frozenset(
-    [expand(term) for term in ("bdd:ScenarioVariable", "bdd:Set", "bhv:Behaviour")]
+    [expand(term) for term in ("bdd:ScenarioVariable", "bdd:Set", "bdd:UserStory", "bhv:Behaviour")]
     + [expand(type_) for type_, _, _ in MEMBERSHIPS.values()]
 )
 _CLASSES = ("http://www.w3.org/2000/01/rdf-schema#Class", "http://www.w3.org/2002/07/owl#Class")

@@ -78,7 +78,13 @@ class Neighbourhoods:
         return list(found.values())
 
     def _leads_to(self, entry: Reached) -> list[Reached]:
+        """Return what a declaration needs.
+
+        The head of a story needs a scenario, as a story without scenarios is a finding.
+        """
         used = self.uses.of(entry)
+        if entry.is_head:
+            used = [*used, *self.uses.story(entry)[1:2]]
         partners = self._partners.get(entry.key)
         return used if partners is None else used + partners
 
@@ -93,12 +99,13 @@ class Neighbourhoods:
         """Record which declarations name the same node.
 
         If only one of them can have it, each becomes a dependency of the others. If they share it, its first name is
-        recorded.
+        recorded. A story without a node is not written, so all its scenarios depend on the node's declarers.
         """
         for declarers in self.known.contested.values():
             others = [self._by_key[declarer.key] for declarer in declarers]
-            for declarer in declarers:
-                self._partners.setdefault(declarer.key, []).extend(others)
+            for other in others:
+                for part in self.uses.story(other) if other.is_head else (other,):
+                    self._partners.setdefault(part.key, []).extend(others)
         for iri, declarers in self.known.shared.items():
             first = declarers[0]
             for declarer in declarers:

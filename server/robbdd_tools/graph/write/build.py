@@ -6,7 +6,9 @@ User input never raises an error. A broken declaration, an unresolved name or an
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, prefix_for
@@ -14,7 +16,7 @@ from robbdd_tools.graph.write.behaviour_trees import add_behaviour_tree
 from robbdd_tools.graph.write.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.write.built import Clash
 from robbdd_tools.graph.write.clauses import ClauseWriter, add_time
-from robbdd_tools.graph.write.declarations import Reached, Uses, reachable_declarations, unreliable_declarations
+from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reachable_declarations, unreliable_declarations
 from robbdd_tools.graph.write.executions import add_execution
 from robbdd_tools.graph.write.foreign import read_graph_file
 from robbdd_tools.graph.write.foreign_imports import graph_format
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from rdflib import URIRef
     from rdflib.term import Node
 
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 TEMPLATE_PARTS = ("-scene", "-scenario", "-scenario-given", "-scenario-when", "-scenario-then")
@@ -81,29 +84,42 @@ def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: 
         known.names,
         clashes,
         tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
-        frozenset(node for entry in uncertain for node in _nodes_of(entry)),
+        frozenset(_nodes_of(uncertain)),
         authors=sink.authors,
     )
 
 
-def _nodes_of(entry: Reached) -> Iterator[str]:
-    """Yield the nodes that only this declaration describes, including the parts of a template.
+def _nodes_of(entries: Iterable[Reached]) -> Iterator[str]:
+    """Yield the nodes that only one of these declarations describes, including the parts of a template.
 
     Variables and behaviours are left out, because the templates of a namespace share them. An error in one template
     does not concern them in another one.
     """
-    for definition in entry.file.definitions.values():
-        if definition.iri is not None and definition.kind not in SHARED and entry.holds(definition):
-            yield definition.iri
-            if definition.kind is SymbolKind.TEMPLATE:
-                yield from (definition.iri + part for part in TEMPLATE_PARTS)
+    declared: dict[str, list[Definition]] = {}
+    for entry in entries:
+        if entry.uri not in declared:
+            declared[entry.uri] = sorted(entry.file.definitions.values(), key=_start)
+        inside = declared[entry.uri]
+        span = entry.placed.span
+        for definition in inside[bisect_left(inside, span.start, key=_start) :]:
+            if definition.span.start >= span.end:
+                break
+            if definition.iri is not None and definition.kind not in SHARED:
+                yield definition.iri
+                if definition.kind is SymbolKind.TEMPLATE:
+                    yield from (definition.iri + part for part in TEMPLATE_PARTS)
+
+
+def _start(definition: Definition) -> int:
+    return definition.span.start
 
 
 def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
     """Write all declarations: first independent ones, then compositions, which may be nested, and then stories."""
     scenes = Scenes()
     tasks: dict[URIRef, URIRef] = {}
-    placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
+    wholes = [tuple(parts) for _, parts in groupby(reached, key=_whole)]
+    placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry, *_ in wholes]
     for root, frame in placed:
         frame.begin()
         if isinstance(root, tree.Template):
@@ -115,14 +131,18 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
             frame.begin()
             add_composition_contents(frame, scenes, root)
     known = Known(scenes, Memberships(sink), tasks)
-    stories = [(root, frame) for root, frame in placed if isinstance(root, tree.Story)]
-    for position, (story, frame) in enumerate(stories):
-        frame.begin()
-        add_story(frame, known, story, position)
+    stories = (parts for parts in wholes if parts[0].story is not None or isinstance(parts[0].tree, tree.Story))
+    for position, parts in enumerate(stories):
+        add_story(sink, known, parts, position)
     add_instances(placed)
     for position, (root, frame) in enumerate(placed):
         frame.begin()
         add_execution(frame, root, position)
+
+
+def _whole(entry: Reached) -> Key:
+    """Return the key of a declaration, or that of the story of a part."""
+    return entry.key if entry.story is None else (entry.uri, entry.story.offset)
 
 
 def _add_simple(frame: Frame, scenes: Scenes, root: tree.ChunkTree) -> None:

@@ -1,10 +1,15 @@
-"""The declarations in the graph of a file. Some of them are unreliable because of errors."""
+"""The declarations in the graph of a file. Some of them are unreliable because of errors.
+
+A story with scenarios is treated scenario by scenario: the part before its scenarios (its *head*) and each scenario are
+entries of their own. So an error or an edit in one scenario does not concern the others.
+"""
 
 from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
@@ -14,6 +19,7 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
 if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.syntax.declaration import Declaration
@@ -24,15 +30,16 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """A declaration in a graph. ``own`` is true if the declaration is in the main file of the graph.
+    """A declaration, or a part of a story, in a graph. ``own`` is true if it is in the main file of the graph.
 
-    ``key`` identifies it among all declarations of the revision.
+    ``key`` identifies it among all declarations and parts of the revision. ``story`` is the story of a part.
     """
 
     file: FileAnalysis
     placed: PlacedDeclaration
     own: bool
     key: Key
+    story: PlacedDeclaration | None = None
 
     @property
     def uri(self) -> str:
@@ -41,8 +48,13 @@ class Reached:
 
     @property
     def tree(self) -> tree.ChunkTree | None:
-        """Its syntax tree, or ``None`` if it is broken."""
+        """Its syntax tree. It is ``None`` if the declaration is broken, and for the head of a story."""
         return self.placed.declaration.tree
+
+    @property
+    def is_head(self) -> bool:
+        """Whether this is the part of a story before its scenarios."""
+        return self.story is not None and self.placed.offset == self.story.offset
 
     def holds(self, definition: Definition) -> bool:
         """Return whether a definition is a part of the declaration."""
@@ -63,18 +75,26 @@ class Uses:
     def __init__(self, closure: Sequence[FileAnalysis], together: Collection[str] = ()) -> None:
         own = {closure[0].document.uri, *together} if closure else set[str]()
         self._files = {
-            file.document.uri: tuple(
-                Reached(file, placed, file.document.uri in own, (file.document.uri, placed.offset))
-                for placed in file.declarations
-            )
+            file.document.uri: tuple(_entries(file, placed, file.document.uri in own) for placed in file.declarations)
             for file in reversed(closure)
         }
         self._found: dict[Key, list[Reached]] = {}
         self._errors: dict[str, list[int]] = {}
+        self._stories: dict[Key, tuple[Reached, ...]] = {
+            entries[0].key: entries for entries in chain(*self._files.values()) if entries[0].story is not None
+        }
+        self._by_path: dict[Key, dict[str, list[Reached]]] = {}
 
     def __iter__(self) -> Iterator[Reached]:
-        """Yield all declarations, imported files before the files that import them, each file in text order."""
-        return (entry for entries in self._files.values() for entry in entries)
+        """Yield all declarations, imported files before the files that import them, each file in text order.
+
+        Of a story with scenarios, its parts are yielded.
+        """
+        return chain.from_iterable(chain.from_iterable(self._files.values()))
+
+    def story(self, entry: Reached) -> tuple[Reached, ...]:
+        """Return the parts of the story of a part, the head first; nothing for a declaration."""
+        return () if entry.story is None else self._stories[entry.uri, entry.story.offset]
 
     def of(self, entry: Reached) -> list[Reached]:
         """Return the declarations to which a declaration refers, in the order of its references.
@@ -83,33 +103,63 @@ class Uses:
         """
         key = entry.key
         if key not in self._found:
-            places = entry.placed.targets.declarations()
-            found = [self._files[uri][position] for uri, position in places]
+            found: list[Reached] = []
+            for uri, position, path in entry.placed.targets.declarations():
+                entries = self._files[uri][position]
+                found += entries if len(entries) == 1 else self._declarers(entries, path)
             if any(symbol.namespace == FILE_NAMESPACE for symbol in entry.placed.declaration.symbols):
-                found += [other for other in self._files[entry.uri] if isinstance(other.tree, tree.Namespace)]
+                found += [other for (other, *_) in self._files[entry.uri] if isinstance(other.tree, tree.Namespace)]
             self._found[key] = found
         return self._found[key]
 
+    def _declarers(self, story: tuple[Reached, ...], path: str) -> list[Reached]:
+        """Return the parts of a story that declare a qualified name."""
+        key = story[0].key
+        if key not in self._by_path:
+            declared: dict[str, list[Reached]] = {}
+            for part in story:
+                for symbol in part.placed.declaration.symbols:
+                    declared.setdefault(symbol.path, []).append(part)
+            self._by_path[key] = declared
+        return self._by_path[key].get(path, [story[0]])
+
     def has_error(self, entry: Reached) -> bool:
-        """Return whether a declaration has an error or an unresolved reference."""
+        """Return whether a declaration has an error or an unresolved reference.
+
+        The head of a story has one if any part of the story has one.
+        """
+        if entry.is_head and entry.story is not None:
+            return self._has_error_in(entry, entry.story.span) or any(map(self.has_error, self.story(entry)[1:]))
         if entry.tree is None or len(entry.placed.targets) < _distinct_references(entry.placed.declaration):
             return True
+        return self._has_error_in(entry, entry.placed.span)
+
+    def _has_error_in(self, entry: Reached, span: Span) -> bool:
         if entry.uri not in self._errors:
             faults = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
             self._errors[entry.uri] = sorted(fault.span.start for fault in faults)
-        return _covers_one(entry, self._errors[entry.uri])
+        return _covers_one(span, self._errors[entry.uri])
+
+
+def _entries(file: FileAnalysis, placed: PlacedDeclaration, own: bool) -> tuple[Reached, ...]:
+    """Return the head and the scenarios of a story with scenarios, and any other declaration as it is."""
+    uri = file.document.uri
+    if not placed.declaration.parts or placed.declaration.tree is None:
+        return (Reached(file, placed, own, (uri, placed.offset)),)
+    return tuple(Reached(file, part, own, (uri, part.offset), placed) for part in placed.parts[:-1])
 
 
 def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
     """Return all declarations of the first file and all declarations that are reachable from them.
 
-    Imported files are before the files that import them.
+    Imported files are before the files that import them. If a part of a story is reachable, the whole story is.
     """
     every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
     found = {entry.key for entry in waiting}
     while waiting:
-        for used in uses.of(waiting.pop()):
+        entry = waiting.pop()
+        for used in (*uses.of(entry), *(uses.story(entry) if entry.is_head or not entry.own else ())):
             if used.key not in found:
                 found.add(used.key)
                 waiting.append(used)
@@ -123,13 +173,17 @@ def unreliable_declarations(
 
     A declaration is unreliable if it has an error or an omitted part, or if it uses an incomplete declaration. A broken
     declaration is incomplete, and so is a set, composition or scene with an error. An error inside a template or a
-    story does not make its users unreliable.
+    story does not make its users unreliable. The head of a story is unreliable if one of its scenarios is.
     """
     starts: dict[str, list[int]] = {}
     for place in sorted(left_out, key=lambda location: location.span.start):
         starts.setdefault(place.uri, []).append(place.span.start)
-    suspect = [entry for entry in reached if uses.has_error(entry) or _covers_one(entry, starts.get(entry.uri, ()))]
-    spreading = [entry for entry in suspect if not isinstance(entry.tree, tree.Template | tree.Story)]
+    suspect = [
+        entry for entry in reached if uses.has_error(entry) or _covers_one(_extent(entry), starts.get(entry.uri, ()))
+    ]
+    spreading = [
+        entry for entry in suspect if entry.story is None and not isinstance(entry.tree, tree.Template | tree.Story)
+    ]
     users: dict[Key, list[Reached]] = {}
     for entry in reached if spreading else ():
         for used in uses.of(entry):
@@ -145,9 +199,12 @@ def unreliable_declarations(
     return tuple(entry for entry in reached if entry.key in found)
 
 
-def _covers_one(entry: Reached, starts: Sequence[int]) -> bool:
-    """Return whether one of some sorted offsets in its file is in a declaration."""
-    span = entry.placed.span
+def _extent(entry: Reached) -> Span:
+    return entry.story.span if entry.is_head and entry.story is not None else entry.placed.span
+
+
+def _covers_one(span: Span, starts: Sequence[int]) -> bool:
+    """Return whether one of some sorted offsets is in a span."""
     first = bisect_left(starts, span.start)
     return first < len(starts) and starts[first] < span.end
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.graph.write.declarations import Key
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
-    from robbdd_tools.syntax.tree import Name, Number, Ref, Text
+    from robbdd_tools.syntax.tree import ChunkTree, Name, Number, Ref, Text
     from robbdd_tools.syntax.tree import Node as TreeNode
 
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\udfff]*")
@@ -146,6 +146,11 @@ class Frame:
         self._uri = file.document.uri
         self._definitions = file.definitions
         self._placed = placed
+
+    @property
+    def tree(self) -> ChunkTree | None:
+        """The syntax tree of the declaration."""
+        return self._placed.declaration.tree
 
     def begin(self) -> None:
         """Make this declaration the author of the triples added from now on."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,8 @@ from robbdd_tools.syntax import tree
 if TYPE_CHECKING:
     from rdflib import URIRef
     from rdflib.term import Node
+
+    from robbdd_tools.graph.write.declarations import Reached
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +37,15 @@ class _Place:
     node: URIRef
 
 
-def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> None:
-    """Add a user story. ``position`` is its index among all stories of the graph."""
-    node = frame.claimed(story.name.text, story.name)
-    if node is None:
+def add_story(sink: Sink, known: Known, parts: Sequence[Reached], position: int) -> None:
+    """Add a user story, or some parts of one. ``position`` is its index among all stories of the graph."""
+    first = parts[0]
+    frame = Frame(sink, first.file, first.placed if first.story is None else first.story)
+    frame.begin()
+    story = frame.tree
+    node = frame.claimed(story.name.text, story.name) if isinstance(story, tree.Story) else None
+    if node is None or not isinstance(story, tree.Story):
         return
-    sink = frame.sink
     sink.add_types(node, ["bdd:UserStory"], frame.at(story.name))
     for term, text in (("role", story.role), ("feature", story.feature), ("benefit", story.benefit)):
         if text is not None:
@@ -48,14 +53,26 @@ def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> N
     sink.add(node, "rbw:position", sink.literal(position))
     namespace = namespace_of(node, story.name.text)
     variants: list[URIRef] = []
-    for variant in story.variants:
+    for inner, variant in _variants(frame, story, parts):
         owner = f"{story.name.text}.{variant.name.text}"
-        criterion = frame.claimed(owner, variant.name)
+        criterion = inner.claimed(owner, variant.name)
         if criterion is not None:
-            sink.add(node, "bdd:has-criteria", criterion, frame.at(variant.name))
-            _add_variant(frame, known, variant, _Place(namespace, owner, criterion))
+            frame.begin()
+            sink.add(node, "bdd:has-criteria", criterion, inner.at(variant.name))
+            inner.begin()
+            _add_variant(inner, known, variant, _Place(namespace, owner, criterion))
             variants.append(criterion)
+    frame.begin()
     sink.add(node, "rbw:criteria-list", sink.make_list(variants))
+
+
+def _variants(frame: Frame, story: tree.Story, parts: Sequence[Reached]) -> Iterator[tuple[Frame, tree.Variant]]:
+    """Yield the scenarios of a story, or those among some parts of it, with their places."""
+    if parts[0].story is None:
+        yield from ((frame, variant) for variant in story.variants)
+    for part in parts:
+        if part.story is not None and isinstance(part.tree, tree.Variant):
+            yield Frame(frame.sink, part.file, part.placed), part.tree
 
 
 def _add_variant(frame: Frame, known: Known, variant: tree.Variant, place: _Place) -> None:
