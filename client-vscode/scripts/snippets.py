@@ -1,4 +1,4 @@
-"""Writes the extension's snippets of whole declarations, which are the server's: ``snippets.py [FOLDER]``."""
+"""Writes the server's snippets for the test of the extension's colours: ``snippets.py [FOLDER]``."""
 
 from __future__ import annotations
 
@@ -6,23 +6,18 @@ import json
 import sys
 from pathlib import Path
 
+from robbdd_tools.features.part_snippets import PART_SNIPPETS
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.syntax.parse import LANGUAGES
 
-FOLDER = Path(__file__).parent.parent / "snippets" / "declarations"
+FOLDER = Path(__file__).parent.parent / "test" / "snippets"
 
 
 def main(folder: Path) -> None:
     """Write one file for each kind of file, into an existing folder."""
     for language in LANGUAGES:
-        found = {
-            # The name is what stands beside the suggestion: it tells this one from the keyword alone.
-            f"{snippet.label}: whole declaration": {
-                "prefix": snippet.label,
-                "body": snippet.body.split("\n"),
-            }
-            for snippet in declaration_snippets(language)
-        }
+        snippets = (*declaration_snippets(language), *PART_SNIPPETS.get(language, ()))
+        found = {snippet.label: snippet.plain.split("\n") for snippet in snippets}
         text = json.dumps(found, indent=2, ensure_ascii=False)
         (folder / f"{language}.json").write_text(f"{text}\n", encoding="utf-8")
 

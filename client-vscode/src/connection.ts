@@ -68,8 +68,6 @@ export function createClient(
         },
       },
       middleware: {
-        provideCompletionItem: async (document, position, context, token, next) =>
-          withoutSnippets(await next(document, position, context, token)),
         provideInlayHints: (document, part, token, next) => {
           const ask = (range: vscode.Range) => next(document, range, token);
           return verdicts === undefined ? ask(part) : verdicts.takeHints(document, part, ask);
@@ -110,18 +108,4 @@ function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {
   createInterface({ input }).on("line", (line) => {
     channel.info(line);
   });
-}
-
-/** Drop the server's snippets: the extension has the same ones, also without a server. */
-function withoutSnippets<Found extends vscode.CompletionItem[] | vscode.CompletionList>(
-  found: Found | null | undefined,
-): Found | vscode.CompletionItem[] | null | undefined {
-  const isKept = ({ kind }: vscode.CompletionItem) => kind !== vscode.CompletionItemKind.Snippet;
-  if (Array.isArray(found)) {
-    return found.filter(isKept);
-  }
-  if (found) {
-    found.items = found.items.filter(isKept);
-  }
-  return found;
 }

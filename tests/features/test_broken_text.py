@@ -12,11 +12,12 @@ import pytest
 from kit import FOLDER, MODEL, SCENE
 from names.test_kinds import ARM, CELL, RUN, VARIANT
 from robbdd_tools.base.document import Span
-from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.hover import hover
+from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.outline import Item, outline
 from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.semantic_tokens import Token, semantic_tokens

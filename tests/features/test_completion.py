@@ -11,11 +11,12 @@ from kit import MODEL, MODELS, ROOT, SCENE, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.features.layout import lay_out
+from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import Elsewhere
 from robbdd_tools.names.project import Project
@@ -209,11 +210,11 @@ def test_every_declaration_has_a_snippet_that_parses(language: str) -> None:
         assert lay_out(snippet.plain) == snippet.plain + "\n"
 
 
-def test_the_extensions_snippets_of_declarations_are_the_servers(tmp_path: Path) -> None:
+def test_the_snippets_whose_colours_the_extension_tests_are_the_servers(tmp_path: Path) -> None:
     script = ROOT / "client-vscode" / "scripts" / "snippets.py"
     subprocess.run([sys.executable, str(script), str(tmp_path)], check=True)
     written = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
-    folder = ROOT / "client-vscode" / "snippets" / "declarations"
+    folder = ROOT / "client-vscode" / "test" / "snippets"
     shipped = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
     assert shipped == written, f"the grammar has changed: run {script.relative_to(ROOT)}"
 

@@ -33,8 +33,8 @@ def changed(old: str, new: str) -> str:
         (DOUBLE, "{", "'var' takes one value in each scenario: use 'set var'"),
         (
             changed(IN_TRAY, f"{IN_TRAY}\n        and held: holds(<part> is held by <robot>, after <place-end>)"),
-            "held",
-            "clauses joined by 'and' or 'or' need parentheses",
+            "and",
+            "clauses joined by 'and' need parentheses",
         ),
         (changed("in-tray: holds", "not in-tray: holds"), "in-tray", "'not' and its clause need parentheses"),
         (

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from robbdd_tools.base.files import file_state, uri_to_path
+from robbdd_tools.base.quantity_units import UNITS
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.describe import describe_import, describe_path, describe_words
+from robbdd_tools.features.literals import LITERAL_FORMS
 from robbdd_tools.features.markdown import code, code_block
 from robbdd_tools.features.model_parts_help import describe_file
+from robbdd_tools.features.part_snippets import PART_SNIPPETS
 from robbdd_tools.features.python_code import CODE_KINDS, describe_code
 from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.names.index import language_of
@@ -31,8 +34,9 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
         case "keyword":
             return _keyword(language_of(uri), path)
         case "snippet":
-            bodies = (one.plain for one in declaration_snippets(language_of(uri)) if f"{one.label} …" == path)
-            return next((code_block(body, language_of(uri)) for body in bodies), None)
+            return LITERAL_FORMS.get(path) or _snippet(language_of(uri), path)
+        case "unit":
+            return None if path not in UNITS else f"`{path}`, a unit of {UNITS[path][0]}"
         case "setting":
             setting = SETTINGS.get(path)
             return (
@@ -54,6 +58,12 @@ def _keyword(language: str, words: str) -> str | None:
     form = keyword_form(language, words)
     parts = (describe_words(words), None if form is None else code_block(form, language))
     return "\n\n".join(part for part in parts if part is not None) or None
+
+
+def _snippet(language: str, label: str) -> str | None:
+    declarations = (one.plain for one in declaration_snippets(language) if f"{one.label} …" == label)
+    parts = (one.plain for one in PART_SNIPPETS.get(language, ()) if one.label == label)
+    return next((code_block(body, language) for body in (*declarations, *parts)), None)
 
 
 def _file(snapshot: Snapshot, uri: str) -> str:

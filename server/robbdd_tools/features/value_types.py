@@ -34,6 +34,8 @@ _ELEMENT_KINDS: Mapping[SymbolKind, str] = {
     SymbolKind.AGENT: "agent",
     SymbolKind.AGENT_SET: "agent",
 }
+_LAST_REFERENCE = re.compile(rf"{_REFERENCE}\s*\Z")
+_LEADING = re.compile(r"<(?P<slot>\w+)>\s+(?P<words>[^\W\d]\w*(?:\s+[^\W\d]\w*)*)")
 _BEFORE_SECONDS = re.compile(r"(?:,|\bwithin)\s*<?\s*\Z")
 _SECONDS = re.compile(rf"{_REFERENCE}\s*seconds\b")
 _MEMBER_KINDS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
@@ -41,12 +43,17 @@ _MEMBER_KINDS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
     """Return the kinds of the variable whose value is being typed at the end of a text."""
+    variable = variable_of_value(snapshot, uri, before)
+    return ANYTHING if variable is None else variable_type(snapshot, variable, from_values=False).kinds
+
+
+def variable_of_value(snapshot: Snapshot, uri: str, before: str) -> Definition | None:
+    """Return the variable whose value is being typed at the end of a text, if it is one."""
     path = _variable_of_line(before) or _variable_of_cell(before)
     for file, declared in snapshot.scope(uri).find(path) if path else ():
         if declared.symbol.kind in ROLE_KINDS["Variable"]:
-            definition = snapshot.scope(uri).define(file, declared)
-            return variable_type(snapshot, definition, from_values=False).kinds
-    return ANYTHING
+            return snapshot.scope(uri).define(file, declared)
+    return None
 
 
 def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element] | None:
@@ -99,6 +106,26 @@ def kinds_in_text(text: str) -> dict[str, Kinds]:
                 found[name] = found.get(name, ANYTHING) & kinds
     for match in _SECONDS.finditer(text):
         found[match[1]] = found.get(match[1], ANYTHING) & SECONDS
+    return found
+
+
+def reference_before(before: str) -> str | None:
+    """Return the name in the reference at the end of a text."""
+    match = _LAST_REFERENCE.search(before)
+    return None if match is None else match[1]
+
+
+@cache
+def leading_kinds() -> Mapping[str, Kinds]:
+    """Return the kinds that fit before the words of a phrase, such as ``is located at``; words of all phrases."""
+    found: dict[str, Kinds] = {}
+    catalog = load_catalog()
+    for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
+        for phrase in (word.phrase, *word.aliases):
+            match = _LEADING.match(phrase)
+            if match is not None:
+                words = " ".join(match["words"].split())
+                found[words] = found.get(words, frozenset[str]()) | slot_kinds(word.name)[match["slot"]]
     return found
 
 

@@ -16,7 +16,7 @@ from robbdd_tools.base.data import data_file
 from robbdd_tools.base.diagnostic import Diagnostic, Edit
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.features.completion import Completion
+from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -31,6 +31,7 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "folder": _KINDS.Folder,
     "catalog": _KINDS.Value,
     "setting": _KINDS.Property,
+    "unit": _KINDS.Unit,
     "class": _KINDS.Class,
     "function": _KINDS.Function,
     "module": _KINDS.Module,

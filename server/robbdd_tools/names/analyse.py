@@ -92,7 +92,7 @@ def _syntax_error(uri: str, fault: SyntaxFault, offset: int) -> Diagnostic:
     fixes: tuple[Fix, ...] = ()
     if fault.fix is not None:
         span = fault.fix.span.shifted(offset)
-        fixes = (Fix(_title(fault.fix), (Edit(uri, span, fault.fix.text),)),)
+        fixes = (Fix(fault.fix.title or _title(fault.fix), (Edit(uri, span, fault.fix.text),)),)
     return Diagnostic(uri, fault.span.shifted(offset), Severity.ERROR, "syntax", fault.message, fixes=fixes)
 
 

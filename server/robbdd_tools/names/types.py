@@ -117,12 +117,14 @@ def variable_type(snapshot: Snapshot, definition: Definition, *, from_values: bo
     is_set = definition.kind is SymbolKind.SET_VARIABLE
     site = site_of(snapshot, definition)
     owner = None if site is None else _owner(site, definition)
-    if site is None or owner is None:
+    if site is None:
         return VariableType(ANYTHING, is_set)
-    bound = _bound_uses(site, owner, definition)
+    bound = None if owner is None else _bound_uses(site, owner, definition)
     if bound is not None:
         return VariableType(bound, False)
-    kinds = narrowed(uses_by_variable(site, owner).get(variable_key(definition), ()))
+    # A template that is being edited may have no tree; the values in its variants are still known.
+    uses = {} if owner is None else uses_by_variable(site, owner)
+    kinds = narrowed(uses.get(variable_key(definition), ()))
     if from_values and len(kinds) > 1:
         kinds = _narrowed_by_variants(snapshot, definition, kinds)
     return VariableType(kinds, is_set)

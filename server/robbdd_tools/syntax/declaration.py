@@ -91,10 +91,14 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFix:
-    """Text that repairs a fault when it replaces ``span``. If ``span`` is empty, the text is inserted."""
+    """Text that repairs a fault when it replaces ``span``. If ``span`` is empty, the text is inserted.
+
+    ``title`` describes the fix; empty if its text does.
+    """
 
     span: Span
     text: str
+    title: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.joined import joining_word
 from robbdd_tools.syntax.near_misses import near_miss, other_file
 from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
@@ -38,6 +39,7 @@ _PLACES = {
     "Then": "'Then:' must come after 'When:' or 'for all'",
 }
 """Required order of the parts of a scenario, which users often get wrong."""
+_UNJOINED = "clauses joined by '{0}' need parentheses around all of them: '( … {0} … )'"
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
 # The keyword of a part out of order is read as a clause name; these are the tokens then missing after it.
 _AS_NAMES = {
@@ -51,7 +53,7 @@ def fault_in(text: str, fault: Fault) -> SyntaxFault:
     found = _rejected(text, fault.rejected)
     if found.fix is not None or fault.repair is None or fault.repair.text is None:
         return found
-    return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text))
+    return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text, fault.repair.title))
 
 
 def expected_words(expectation: Expectation) -> list[str]:
@@ -73,6 +75,9 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     misplaced = _misplaced(text, rejected)
     if misplaced is not None:
         return misplaced
+    joining = joining_word(text, rejected.offset) if ":" in rejected.expected.literals else None
+    if joining is not None:
+        return SyntaxFault(joining, _UNJOINED.format(text[joining.start : joining.end]))
     near = near_miss(text, rejected)
     if near is not None:
         return near

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import accumulate
 from typing import Any, TypeVar, cast, overload
 
-from robbdd_tools.syntax.declaration import Reference, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.declaration import Reference, Symbol, SyntaxFault
 from robbdd_tools.syntax.scene_tree import Node, Ref, field_names
 
 Entry = TypeVar("Entry")
@@ -97,5 +98,5 @@ def moved_ref(ref: Ref, by: int) -> Ref:
 
 def moved_fault(fault: SyntaxFault, by: int) -> SyntaxFault:
     """Return a fault and its repair at its place in a larger text."""
-    fix = None if fault.fix is None else SyntaxFix(fault.fix.span.shifted(by), fault.fix.text)
+    fix = None if fault.fix is None else replace(fault.fix, span=fault.fix.span.shifted(by))
     return SyntaxFault(fault.span.shifted(by), fault.message, fix)

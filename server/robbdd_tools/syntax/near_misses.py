@@ -54,12 +54,6 @@ _NEAR_MISSES = (
         "'var' takes one value in each scenario: use 'set var' for a variable whose value is a set",
         rewrite=_as_set,
     ),
-    NearMiss(
-        r"[\s)](?:and|or)\s+\Z",
-        _NAME,
-        "clauses joined by 'and' or 'or' need parentheses: '( … and … )'",
-        ":",
-    ),
     NearMiss(r"\bvar\s+\Z", _NAME, "variables are declared before 'Given:': move it there", ":"),
     NearMiss(r"\bset\s+\Z", r"var\b", "variables are declared before 'Given:': move it there", ":"),
     NearMiss(r"\bnot\s+\Z", _NAME, "'not' and its clause need parentheses: '( not name: holds(…) )'", ":"),

@@ -16,6 +16,7 @@ from itertools import islice
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.chunk import parse_chunk
+from robbdd_tools.syntax.joined import joined_clauses
 from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 MAX_FAULTS = 12
@@ -26,6 +27,7 @@ ALIKE = 0.6
 HOLE = "\u02ad"
 """Placeholder for a missing name: a letter for the grammar, but one that no alphabet uses."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
+_JOINING = re.compile(r"(?:\s|//[^\n]*\n)*(?:and|or)\b")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
 _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
 
@@ -34,12 +36,14 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 class Repair:
     """A repaired text, which has the same length as the original. ``span`` is the part that was changed.
 
-    ``text`` is the fix to offer for that part; ``None`` if the part was blanked.
+    ``text`` is the fix to offer for that part; ``None`` if the part was blanked. ``title`` describes the fix; empty if
+    its text does.
     """
 
     repaired: str
     span: Span
     text: str | None
+    title: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +101,7 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
     furthest = stopped.offset
     own = _word(text, stopped.offset).end
     next_word = _word(text, own + len(text[own:]) - len(text[own:].lstrip())).end
-    for parses, repair in enumerate(islice(_repairs(text, stopped), most), start=1):
+    for parses, repair in enumerate(islice(_repairs(language, text, stopped), most), start=1):
         found = _parse(language, repair.repaired)
         # Repaired text beats blanked text, however far the parser runs on after misreading the rest. An inserted symbol
         # needs
@@ -120,11 +124,12 @@ def _parse(language: str, text: str) -> Parsed | Rejected:
     return found
 
 
-def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
+def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     """Yield the repairs of one error, the most likely first."""
     offset = stopped.offset
     found = _word(text, offset)
     literals = sorted(stopped.expected.literals)
+    yield from _parentheses(language, text, stopped)
     yield from _single_values(text, offset)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
     if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
@@ -144,6 +149,19 @@ def _single_values(text: str, offset: int) -> Iterator[Repair]:
     found = _SET_OF_VALUES.search(text, max(0, offset - 200), offset)
     if found:
         yield _blanked(text, Span(*found.span("set")))
+
+
+def _parentheses(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
+    """Put clauses joined by 'and' or 'or' into parentheses, unless both words occur: their order is ambiguous."""
+    joined = joined_clauses(language, text, stopped)
+    if joined is None or joined.end is None:
+        return
+    start, end = joined.start, joined.end
+    around = text[start - 1 : start] + (text[end : end + 1] or " ")
+    if around.isspace() and len(around) == 2 and not _JOINING.match(text, end):
+        clauses = text[start:end]
+        repaired = f"{text[: start - 1]}({clauses}){text[end + 1 :]}"
+        yield Repair(repaired, Span(start, end), f"({clauses})", "Put the clauses into parentheses")
 
 
 def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:

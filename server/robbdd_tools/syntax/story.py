@@ -15,7 +15,7 @@ from itertools import chain, pairwise
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import Declaration, Placed, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.declaration import Declaration, Placed, Symbol, SyntaxFault
 from robbdd_tools.syntax.faults import last_token, trailing_fault
 from robbdd_tools.syntax.move import InPlace, moved_fault, moved_node, moved_reference, moved_symbol
 from robbdd_tools.syntax.piece import Piece, read_piece
@@ -223,7 +223,7 @@ def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
     fix = fault.fix
     if fix is not None:
         place = Span(_unframed(fix.span.start, cut), _unframed(fix.span.end, cut))
-        fix = SyntaxFix(place, fix.text)
+        fix = replace(fix, span=place)
     return SyntaxFault(span, fault.message, fix)
 
 

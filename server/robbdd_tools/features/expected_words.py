@@ -1,0 +1,93 @@
+"""Determine what the grammar accepts at a cursor, and the keyword sequences that may be written there."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.syntax.chunk import parse_chunk
+from robbdd_tools.syntax.grammar_files import grammar_text
+from robbdd_tools.syntax.joined import joined_clauses
+from robbdd_tools.syntax.parsed import Parsed
+
+if TYPE_CHECKING:
+    from robbdd_tools.syntax.parsed import Expectation
+
+MAX_BROKEN_LINES = 50
+"""Maximum number of unparsable lines skipped before a cursor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a text.
+
+    - ``before``: the text that was parsed. Lines that cannot be parsed are blanked, and clauses joined by 'and' or 'or'
+      have their parentheses.
+    - ``expected``: what the grammar accepts after it; ``None`` if the text could not be parsed.
+    - ``opened``: the distances to the end of the text of the parentheses that are missing and still open there.
+    """
+
+    before: str
+    expected: Expectation | None
+    opened: tuple[int, ...] = ()
+
+
+def place_after(language: str, before: str) -> Place:
+    """Return what the grammar accepts after a text."""
+    opened: list[int] = []
+    for _ in range(MAX_BROKEN_LINES):
+        parsed = parse_chunk(language, before)
+        if isinstance(parsed, Parsed):
+            # After a whole declaration another one starts, whose first words may already be typed.
+            return place_after(language, before[parsed.trailing :] if parsed.trailing is not None else "")
+        joined = joined_clauses(language, before, parsed)
+        if joined is not None:
+            if joined.end is None:
+                opened.append(len(before) - joined.start)
+            else:
+                before = f"{before[: joined.end]}){before[joined.end :]}"
+            before = f"{before[: joined.start]}({before[joined.start :]}"
+            continue
+        if not before[parsed.offset :].strip():
+            return Place(before, parsed.expected, tuple(opened))
+        start = before.rfind("\n", 0, parsed.offset) + 1
+        end = before.find("\n", parsed.offset)
+        if end < 0 or not before[start:end].strip():
+            break
+        before = before[:start] + " " * (end - start) + before[end:]
+    return Place(before, None)
+
+
+def keyword_phrases(language: str, before: str, expected: Expectation) -> list[str]:
+    """Return each accepted keyword together with the keywords that must follow it."""
+    found: set[str] = set()
+    for literal in expected.literals:
+        if not literal[:1].isalpha():
+            continue
+        runs = _keyword_runs(language).get(literal, ())
+        fitting = [run for run in runs if is_accepted(language, before, run)]
+        found.update(fitting or [literal])
+    return sorted(found)
+
+
+def is_accepted(language: str, before: str, following: str) -> bool:
+    """Return whether the grammar accepts a text after another one."""
+    text = f"{before}{following} "
+    parsed = parse_chunk(language, text)
+    while isinstance(parsed, Parsed) and parsed.trailing is not None:
+        # Text after a whole declaration must begin another one.
+        text = text[parsed.trailing :]
+        parsed = parse_chunk(language, text)
+    return isinstance(parsed, Parsed) or not text[parsed.offset :].strip()
+
+
+@cache
+def _keyword_runs(language: str) -> dict[str, tuple[str, ...]]:
+    """Map each keyword to the keyword sequences in the grammar that start with it (``is`` → ``is located at`` …)."""
+    runs: dict[str, dict[str, None]] = {}
+    for match in re.finditer(r"'[^\W\d]\w*'(?:\s+'[^\W\d]\w*')+", grammar_text(language)):
+        words = re.findall(r"\w+", match[0])
+        runs.setdefault(words[0], {})[" ".join(words)] = None
+    return {word: tuple(found) for word, found in runs.items()}

@@ -1,0 +1,218 @@
+"""Names to propose at a cursor: those in scope, those of files that can be imported, configurations and events."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.settings import SETTINGS
+from robbdd_tools.checks.lines import import_edit
+from robbdd_tools.features.expected_words import place_after
+from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
+from robbdd_tools.features.unimported import Elsewhere, beside, loaded
+from robbdd_tools.features.value_types import (
+    fits,
+    kinds_in_text,
+    leading_kinds,
+    may_be,
+    reference_before,
+    scene_wanted,
+    slot_wanted,
+    values_wanted,
+    variable_of_value,
+)
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.types import variable_type
+from robbdd_tools.names.uses import ANYTHING, Kinds
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Edit
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.features.cursor import Cursor
+    from robbdd_tools.features.expected_words import Place
+    from robbdd_tools.features.literals import Literal, ValueFacts
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
+    from robbdd_tools.names.project import Snapshot
+
+MAX_TO_IMPORT = 300
+"""Maximum number of proposed names that need an import; loaded files and files in the same folder come first."""
+_CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
+_EMITTED = re.compile(r"\bemits\s+\Z")
+_VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
+
+
+@dataclass(frozen=True, slots=True)
+class Completion:
+    """One completion proposal.
+
+    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, one of ``CODE_KINDS``, or the
+      kind of a symbol.
+    - ``text``: the text to insert. The text of a snippet contains placeholders.
+    - ``span``: the text that ``text`` replaces.
+    - ``whole``: like ``span``, but including the rest of the word after the cursor.
+    - ``rank``: a proposal with a smaller rank fits better.
+    - ``edits``: additional edits, for example a new import.
+    - ``origin``: the document and the qualified name of a proposed name, or the URI of a proposed file and ``""``.
+    """
+
+    label: str
+    kind: str
+    detail: str
+    text: str
+    span: Span
+    whole: Span
+    rank: int = 0
+    edits: tuple[Edit, ...] = ()
+    origin: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Names to propose at a cursor."""
+
+    snapshot: Snapshot
+    file: FileAnalysis
+    cursor: Cursor
+    whole: Span
+    elsewhere: Elsewhere | None
+
+    def of(self, language: str, place: Place) -> Iterator[Completion]:
+        """Yield the names that the grammar accepts at a place."""
+        if place.expected is None:
+            return
+        if "NameText" in place.expected.rules:
+            yield from self.settings()
+            yield from self.moments()
+        yield from self.proposals(place.expected.rules, bracket="")
+        if "<" in place.expected.literals:
+            inside = place_after(language, place.before + "<").expected
+            if inside is not None:
+                yield from self.proposals(inside.rules, bracket="<")
+
+    def facts(self) -> ValueFacts:
+        """Return what is known about the value at the cursor."""
+        uri, before = self.file.document.uri, without_number(self.cursor.before)
+        variable = variable_of_value(self.snapshot, uri, before)
+        if variable is None:
+            return facts_in_clause(before)
+        return facts_of_variable(self.snapshot, variable, values_wanted(self.snapshot, uri, before))
+
+    def literals(self, choices: Iterable[Literal]) -> Iterator[Completion]:
+        """Yield the proposals of literals."""
+        for one in choices:
+            origin = (self.file.document.uri, one.described)
+            yield Completion(one.label, one.kind, one.detail, one.text, self.cursor.span, self.whole, origin=origin)
+
+    def misfitting_phrases(self) -> frozenset[str]:
+        """Return the beginnings of phrases that do not fit the type of the variable before the cursor."""
+        name = reference_before(self.cursor.before)
+        if name is None or self.cursor.placed is None:
+            return frozenset()
+        kinds = kinds_in_text(self._other_lines()).get(name) or self._kinds_of(name)
+        return frozenset(words for words, fitting in leading_kinds().items() if not fitting & kinds)
+
+    def _other_lines(self) -> str:
+        """Return the text of the declaration at the cursor without the cursor's line."""
+        assert self.cursor.placed is not None
+        text, place = self.cursor.placed.declaration.text, self.cursor.span.start - self.cursor.placed.offset
+        end = text.find("\n", place)
+        return text[: text.rfind("\n", 0, place) + 1] + (text[end:] if end >= 0 else "")
+
+    def _kinds_of(self, name: str) -> Kinds:
+        """Return the kinds of a variable, by its values if no phrase narrows its type."""
+        scope = self.snapshot.scope(self.file.document.uri)
+        visible = scope.visible(ROLE_KINDS["Variable"], self.cursor.scopes)
+        kinds = variable_type(self.snapshot, scope.define(*visible[name])).kinds if name in visible else ANYTHING
+        return kinds or ANYTHING
+
+    def settings(self) -> Iterator[Completion]:
+        """Yield the configurations that ``has config`` can set."""
+        if _CONFIGURED.search(self.cursor.before):
+            for name, setting in SETTINGS.items():
+                detail = f"of {setting.target}" + (f", {setting.unit}" if setting.unit else "")
+                yield Completion(name, "setting", detail, name, self.cursor.span, self.whole)
+
+    def moments(self) -> Iterator[Completion]:
+        """Yield the events of the catalog's behaviours, for ``emits``."""
+        if _EMITTED.search(self.cursor.before):
+            emitting: dict[str, list[str]] = {}
+            for behaviour in load_catalog().behaviours.values():
+                for event in behaviour.events:
+                    emitting.setdefault(event, []).append(behaviour.name)
+            for event, names in emitting.items():
+                yield Completion(event, "event", f"of {', '.join(names)}", event, self.cursor.span, self.whole)
+
+    def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
+        """Yield the names that match some rules: first the names in scope, then the names in importable files."""
+        uri = self.file.document.uri
+        roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
+        wanted, members = ANYTHING, None
+        if not _VALUE_RULES.isdisjoint(rules):
+            wanted = self.facts().kinds
+            members = scene_wanted(self.snapshot, uri, self.cursor.before)
+        for role in roles:
+            known = set[str]()
+            for name, definition, rank in self._in_scope(role):
+                known.add(name)
+                if fits(self.snapshot, definition, wanted, members):
+                    yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
+            if role != "Namespace" and members is None:
+                yield from islice(self._to_import(role, known, bracket, wanted), MAX_TO_IMPORT)
+
+    def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
+        scope = self.snapshot.scope(self.file.document.uri)
+        visible = scope.visible(ROLE_KINDS[role], self.cursor.scopes)
+        misfits = _misfits(self.cursor) if role == "Variable" else frozenset[str]()
+        for name in sorted(visible, key=lambda name: (name in misfits, name)):
+            definition = scope.define(*visible[name])
+            yield self._written(name, definition), definition, int(name in misfits)
+
+    def _written(self, name: str, definition: Definition) -> str:
+        """Return the shortest form of a name that starts with the qualifier that the user typed."""
+        qualifier, dot, _ = self.cursor.word.rpartition(".")
+        path = definition.symbol.path
+        if not dot or definition.uri != self.file.document.uri or not path.endswith(name):
+            return name
+        forms = (path.removeprefix(f"{scope}.") for scope in (*self.cursor.scopes, ""))
+        return next((form for form in forms if form.startswith(qualifier + dot)), name)
+
+    def _to_import(self, role: str, known: set[str], bracket: str, wanted: Kinds) -> Iterator[Completion]:
+        uri = self.file.document.uri
+        others = [] if self.elsewhere is None else self.elsewhere.importable(self.snapshot, uri)
+        for other in [*loaded(self.snapshot, uri), *beside(self.snapshot, uri), *others]:
+            for name in sorted(other.names):
+                kind = next((kind for kind in other.names[name] if kind in ROLE_KINDS[role]), None)
+                if kind is not None and name not in known and may_be(kind, wanted):
+                    known.add(name)
+                    found = self._proposal(name, kind, (other.uri, name), bracket, rank=2)
+                    detail = f"{found.detail}, imports '{other.path}'"
+                    yield replace(found, detail=detail, edits=(import_edit(self.file, other.path),))
+
+    def _proposal(self, name: str, kind: SymbolKind, origin: tuple[str, str], bracket: str, rank: int) -> Completion:
+        closing = kind is not SymbolKind.NAMESPACE and _needs_closing(self.file.document.text, self.cursor)
+        text = f"{bracket}{name}>" if closing else f"{bracket}{name}"
+        return Completion(name, kind, kind, text, self.cursor.span, self.whole, rank, origin=origin)
+
+
+def _misfits(cursor: Cursor) -> frozenset[str]:
+    """Return the variables in the declaration at the cursor whose type does not fit the slot at the cursor.
+
+    The type of a variable is inferred from the other phrases that use it.
+    """
+    wanted = slot_wanted(cursor.before)
+    if cursor.placed is None or wanted == ANYTHING:
+        return frozenset()
+    return frozenset(
+        name for name, kinds in kinds_in_text(cursor.placed.declaration.text).items() if not kinds & wanted
+    )
+
+
+def _needs_closing(text: str, cursor: Cursor) -> bool:
+    """Return whether the reference at the cursor still lacks its closing ``>``."""
+    return re.compile(r"[\w\-.]*\s*>").match(text, cursor.span.end) is None
