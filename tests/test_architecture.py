@@ -28,6 +28,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"checks", "features", "gherkin"}),
     frozenset({"run"}),
     frozenset({"workbench"}),
+    frozenset({"campaign"}),
     frozenset({"lsp", "dap", "cli", "commands", "pytest_plugin"}),
     frozenset({"start"}),
 )
@@ -58,6 +59,7 @@ HOMES = {
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
     "rich": {"commands"},
+    "scipy": {"campaign"},
     "pytest": {"pytest_plugin"},
 }
 # Packages of one rank that may import each other; all others of one rank may not.

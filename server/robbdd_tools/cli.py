@@ -20,16 +20,13 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
-from robbdd_tools.commands.log_arguments import allow_log, judge_options
+from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run_arguments import (
-    allow_policy,
     allow_run,
     allow_scenex,
-    allow_store,
     argument_problem,
-    policy,
     port,
     resume_options,
     run_options,
@@ -132,37 +129,7 @@ def _parser() -> argparse.ArgumentParser:
     allow_run(run)
     run.set_defaults(command=_run)
 
-    runs = commands.add_parser("runs", help="list the stored runs of a project")
-    runs.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path())
-    allow_store(runs)
-    runs.set_defaults(command=_runs)
-
-    replay = commands.add_parser("replay", help="simulate a stored run again and check that its traces are identical")
-    replay.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
-    replay.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
-    replay.add_argument("--force", action="store_true", help="continue even if files have changed since the run")
-    allow_policy(replay)
-    allow_store(replay)
-    replay.set_defaults(command=_replay)
-
-    judge = commands.add_parser("judge", help="judge a stored run, or the log of a real robot, without simulating")
-    text = "number of a stored run, latest, a run's folder; or a log: a ROS bag, an MCAP file, a CSV table"
-    judge.add_argument("run", metavar="RUN|LOG", help=text)
-    judge.add_argument("path", metavar="FILE|DIR", type=Path)
-    judge.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*", help="as for run")
-    judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
-    allow_log(judge)
-    allow_store(judge)
-    judge.set_defaults(command=_judge)
-
-    export = commands.add_parser("export", help="write the traces of a stored run as bags of ROS 2")
-    export.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
-    export.add_argument("--ros2", action="store_true", required=True, help="as a rosbag2: transforms, joints, events")
-    export.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="a new folder")
-    export.add_argument("--mcap", action="store_true", help="store messages as MCAP instead of SQLite")
-    export.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
-    allow_store(export)
-    export.set_defaults(command=_export)
+    stored = add_commands_of_runs(commands)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
@@ -200,7 +167,7 @@ def _parser() -> argparse.ArgumentParser:
     text = "wait for one editor on this port of 127.0.0.1 instead of standard input and output"
     dap.add_argument("--port", metavar="PORT", type=port, help=text)
     dap.set_defaults(command=_dap)
-    _allow_refusal(run, replay, judge, export, view, dap)
+    _allow_refusal(run, *stored, view, dap)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -278,12 +245,6 @@ def _run(options: argparse.Namespace) -> int:
         return run(run_options(options))
 
 
-def _runs(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.runs import list_runs
-
-    return list_runs(options.path, options.store)
-
-
 def _new(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.new import list_templates, new_project
 
@@ -300,27 +261,6 @@ def _dap(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.dap import serve_debugger
 
     return serve_debugger(options.port)
-
-
-def _replay(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.replay import ReplayOptions, replay
-
-    with output_may_be_lost():
-        return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store, options.force))
-
-
-def _judge(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.judge import judge
-
-    with output_may_be_lost():
-        return judge(judge_options(options))
-
-
-def _export(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.export_run import ExportOptions, export_run
-
-    chosen = options.scenario or ()
-    return export_run(ExportOptions(options.run, options.output, chosen, options.store, options.mcap))
 
 
 def _import(options: argparse.Namespace) -> int:

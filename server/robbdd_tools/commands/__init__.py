@@ -3,8 +3,9 @@
 This package is in the layer of ``cli``.
 """
 
-OK, FINDINGS, FAILED = 0, 1, 2
-"""Exit codes: success; errors found, or a clause that does not hold; the command could not do its work."""
+OK, FINDINGS, FAILED, CANNOT_TELL = 0, 1, 2, 3
+"""Exit codes: success; errors found, or a clause that does not hold; the command could not do its work; more
+executions are needed to tell."""
 
 
 def signal_code(number: int) -> int:

@@ -1,0 +1,1 @@
+"""Decisions from many executions: rates with their intervals, comparisons, reports."""

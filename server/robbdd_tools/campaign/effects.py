@@ -1,0 +1,153 @@
+"""The effect of a change on one clause: pass rate and margin before and after, and what can be said of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+from robbdd_tools.campaign.rates import (
+    Interval,
+    paired_interval,
+    paired_probability,
+    separate_interval,
+    separate_probability,
+    statistics,
+)
+from robbdd_tools.monitor.verdict import Outcome
+
+if TYPE_CHECKING:
+    from robbdd_tools.campaign.matched_executions import Judged, MatchedClause
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """How many of ``total`` executions hold, and how many are unknown."""
+
+    holding: int
+    unknown: int
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class RateEffect:
+    """The change of a pass rate: the share of executions that hold after, minus that before.
+
+    - ``difference``: without the unknown executions; ``None`` if all are unknown.
+    - ``interval``: contains the true change whatever the unknown executions would have been.
+    - ``gained``, ``lost``: executions that hold only after, or only before; known verdicts of the same scenarios.
+    - ``worse``, ``better``: p-values of the tests against no change, with the unknown executions counted as speaks
+      against that result.
+    """
+
+    difference: float | None
+    interval: Interval
+    gained: int
+    lost: int
+    worse: float
+    better: float
+
+
+@dataclass(frozen=True, slots=True)
+class MarginEffect:
+    """The change of the mean margin in ``unit`` (SI) over ``executions`` whose margins are known on both sides.
+
+    ``missing`` executions have a margin on one side or on none. ``probability`` is the p-value of the t-test against
+    no change: of the differences if the executions are paired, else Welch's.
+    """
+
+    unit: str
+    executions: int
+    missing: int
+    difference: float
+    interval: Interval
+    probability: float
+
+
+def rate(judged: Sequence[Judged]) -> Rate:
+    """Count the verdicts of one run on a clause."""
+    counts = Counter(one.verdict for one in judged)
+    return Rate(counts[Outcome.HOLDS], counts[Outcome.UNKNOWN], len(judged))
+
+
+def rate_effect(clause: MatchedClause, level: float, *, paired: bool) -> RateEffect:
+    """Return the change of the pass rate of a clause, with an interval of the confidence ``level``."""
+    pairs = list(zip(clause.before, clause.after, strict=True))
+    # Each unknown verdict as it would speak for the change, and as it would speak against it.
+    least = [(_holds(old, unknown=True), _holds(new, unknown=False)) for old, new in pairs]
+    most = [(_holds(old, unknown=False), _holds(new, unknown=True)) for old, new in pairs]
+    interval = _interval(least, level, paired=paired).hull(_interval(most, level, paired=paired))
+    known = [
+        (_holds(old, unknown=False), _holds(new, unknown=False))
+        for old, new in pairs
+        if Outcome.UNKNOWN not in (old.verdict, new.verdict)
+    ]
+    gained, lost = _flips(known)
+    return RateEffect(
+        (gained - lost) / len(known) if known else None,
+        interval,
+        gained,
+        lost,
+        _probability(most, paired=paired) if _change(most) < 0 else 1.0,
+        _probability(least, paired=paired) if _change(least) > 0 else 1.0,
+    )
+
+
+def margin_effect(clause: MatchedClause, level: float, *, paired: bool) -> MarginEffect | None:
+    """Return the change of the mean margin; ``None`` if fewer than two executions have margins in both runs."""
+    pairs = [
+        (old.margin, new.margin)
+        for old, new in zip(clause.before, clause.after, strict=True)
+        if old.margin is not None and new.margin is not None
+    ]
+    if len(pairs) < 2:
+        return None
+    before, after = [old for old, _ in pairs], [new for _, new in pairs]
+    difference = fmean(after) - fmean(before)
+    interval, probability = _margin_test(before, after, level, paired=paired)
+    missing = len(clause.before) - len(pairs)
+    return MarginEffect(clause.unit, len(pairs), missing, difference, interval, probability)
+
+
+def _holds(judged: Judged, *, unknown: bool) -> bool:
+    return unknown if judged.verdict is Outcome.UNKNOWN else judged.verdict is Outcome.HOLDS
+
+
+def _flips(pairs: Sequence[tuple[bool, bool]]) -> tuple[int, int]:
+    return sum(new and not old for old, new in pairs), sum(old and not new for old, new in pairs)
+
+
+def _change(pairs: Sequence[tuple[bool, bool]]) -> int:
+    gained, lost = _flips(pairs)
+    return gained - lost
+
+
+def _sides(pairs: Sequence[tuple[bool, bool]]) -> tuple[tuple[int, int], tuple[int, int]]:
+    return (sum(old for old, _ in pairs), len(pairs)), (sum(new for _, new in pairs), len(pairs))
+
+
+def _interval(pairs: Sequence[tuple[bool, bool]], level: float, *, paired: bool) -> Interval:
+    if paired:
+        return paired_interval(*_flips(pairs), len(pairs), level)
+    return separate_interval(*_sides(pairs), level)
+
+
+def _probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> float:
+    return paired_probability(*_flips(pairs)) if paired else separate_probability(*_sides(pairs))
+
+
+def _margin_test(
+    before: Sequence[float], after: Sequence[float], level: float, *, paired: bool
+) -> tuple[Interval, float]:
+    differences = [new - old for old, new in zip(before, after, strict=True)]
+    spread = differences if paired else [*(old - before[0] for old in before), *(new - after[0] for new in after)]
+    if len(set(spread)) == 1:
+        # All of them moved by the same: no spread to estimate.
+        moved = differences[0]
+        return Interval(moved, moved), 1.0 if moved == 0.0 else 0.0
+    stats = statistics()
+    test = stats.ttest_1samp(differences, 0.0) if paired else stats.ttest_ind(after, before, equal_var=False)
+    found = test.confidence_interval(level)
+    return Interval(float(found.low), float(found.high)), float(test.pvalue)

@@ -1,0 +1,145 @@
+"""The arguments of the commands about stored runs: ``runs``, ``replay``, ``judge``, ``compare``, ``export``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Protocol
+
+from robbdd_tools.commands.log_arguments import allow_log, judge_options
+from robbdd_tools.commands.lost_output import output_may_be_lost
+from robbdd_tools.commands.run_arguments import allow_policy, allow_store, policy
+
+
+class AddsCommands(Protocol):
+    """The result of ``ArgumentParser.add_subparsers``."""
+
+    def add_parser(self, name: str, *, help: str) -> argparse.ArgumentParser:
+        """Add a command."""
+        ...
+
+
+RUN = "number of a stored run, latest, or a run's folder"
+
+
+def add_commands_of_runs(commands: AddsCommands) -> tuple[argparse.ArgumentParser, ...]:
+    """Add the commands, and return those that may execute users' code."""
+    _add_runs(commands)
+    _add_compare(commands)
+    return _add_replay(commands), _add_judge(commands), _add_export(commands)
+
+
+def _add_runs(commands: AddsCommands) -> None:
+    runs = commands.add_parser("runs", help="list the stored runs of a project")
+    runs.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path())
+    allow_store(runs)
+    runs.set_defaults(command=_runs)
+
+
+def _add_replay(commands: AddsCommands) -> argparse.ArgumentParser:
+    replay = commands.add_parser("replay", help="simulate a stored run again and check that its traces are identical")
+    replay.add_argument("run", metavar="RUN", help=RUN)
+    replay.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
+    replay.add_argument("--force", action="store_true", help="continue even if files have changed since the run")
+    allow_policy(replay)
+    allow_store(replay)
+    replay.set_defaults(command=_replay)
+    return replay
+
+
+def _add_judge(commands: AddsCommands) -> argparse.ArgumentParser:
+    judge = commands.add_parser("judge", help="judge a stored run, or the log of a real robot, without simulating")
+    judge.add_argument("run", metavar="RUN|LOG", help=f"{RUN}; or a log: a ROS bag, an MCAP file, a CSV table")
+    judge.add_argument("path", metavar="FILE|DIR", type=Path)
+    judge.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*", help="as for run")
+    judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
+    allow_log(judge)
+    allow_store(judge)
+    judge.set_defaults(command=_judge)
+    return judge
+
+
+def _add_compare(commands: AddsCommands) -> None:
+    compare = commands.add_parser("compare", help="decide whether a run is worse than another one")
+    text = f"{RUN}; or the results file of `robbdd run --json`"
+    compare.add_argument("before", metavar="BEFORE", help=text)
+    compare.add_argument("after", metavar="AFTER", help="as BEFORE")
+    compare.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the runs' project")
+    text = "the change that is accepted: 'no clause worse than 2 points', 'at-goal not worse than 5 mm'; repeats"
+    compare.add_argument("--gate", metavar="TEXT", action="append", help=text)
+    compare.add_argument("--by-margin", action="store_true", help="margins decide, too, not only pass rates")
+    text = "confidence level of the intervals and of the decision (default: 0.95)"
+    compare.add_argument("--level", metavar="P", type=_level, default=0.95, help=text)
+    compare.add_argument("--json", metavar="OUT", type=Path, help="write the comparison to this file")
+    text = "write the comparison to this file, for the summary of continuous integration"
+    compare.add_argument("--markdown", metavar="OUT", type=Path, help=text)
+    allow_store(compare)
+    compare.set_defaults(command=_compare)
+
+
+def _add_export(commands: AddsCommands) -> argparse.ArgumentParser:
+    export = commands.add_parser("export", help="write the traces of a stored run as bags of ROS 2")
+    export.add_argument("run", metavar="RUN", help=RUN)
+    export.add_argument("--ros2", action="store_true", required=True, help="as a rosbag2: transforms, joints, events")
+    export.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="a new folder")
+    export.add_argument("--mcap", action="store_true", help="store messages as MCAP instead of SQLite")
+    export.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
+    allow_store(export)
+    export.set_defaults(command=_export)
+    return export
+
+
+def _level(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0.5 <= number < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' must be a number from 0.5 to less than 1, for example 0.95")
+    return number
+
+
+def _runs(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.runs import list_runs
+
+    return list_runs(options.path, options.store)
+
+
+def _replay(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.replay import ReplayOptions, replay
+
+    with output_may_be_lost():
+        return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store, options.force))
+
+
+def _judge(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.judge import judge
+
+    with output_may_be_lost():
+        return judge(judge_options(options))
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.compare import CompareOptions, compare
+
+    gates = tuple(options.gate or ())
+    return compare(
+        CompareOptions(
+            options.before,
+            options.after,
+            options.path,
+            options.store,
+            gates,
+            options.level,
+            options.by_margin,
+            options.json,
+            options.markdown,
+        )
+    )
+
+
+def _export(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.export_run import ExportOptions, export_run
+
+    chosen = options.scenario or ()
+    return export_run(ExportOptions(options.run, options.output, chosen, options.store, options.mcap))
