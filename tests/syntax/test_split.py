@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit import MODEL, SCENE
-from robbdd_tools.syntax.split import split
+from robbdd_tools.syntax.split import resplit, split
 
 
 def heads(language: str, text: str) -> list[str]:
@@ -72,3 +72,40 @@ def test_chunks_are_the_text_in_order_without_gaps(text: str) -> None:
 def test_models_split_into_their_declarations() -> None:
     assert len(split("bdd", MODEL)) == 9
     assert len(split("scene", SCENE)) == 9
+
+
+PIECES = [
+    "",
+    " ",
+    "{",
+    "}",
+    "(",
+    ")",
+    '"',
+    "'",
+    "//",
+    "\n",
+    "Event (ns=t) e\n",
+    "User Story s {",
+    "User // {\n",
+    "Story",
+]
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(0, 0.999), st.integers(0, 30), st.sampled_from(PIECES)),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_after_edits_a_text_is_split_as_if_it_were_new(edits: list[tuple[float, int, str]]) -> None:
+    text = MODEL
+    chunks = split("bdd", text)
+    for number, (where, length, piece) in enumerate(edits):
+        place = int(where * len(text))
+        after = f"{text[:place]}{piece}{text[place + length :]}"
+        chunks, text = resplit("bdd", text, chunks, after), after
+        # A text that was never seen before is split as a whole; the prefix makes it one.
+        whole = split("bdd", f"// {number}\n{text}")
+        assert [chunk.text for chunk in chunks] == [chunk.text for chunk in whole]

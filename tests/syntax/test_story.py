@@ -15,12 +15,13 @@ from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
-from robbdd_tools.syntax.story import cut_story, quotes_braces
+from robbdd_tools.syntax.story_cut import cut_story, forget_scan, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols
 from robbdd_tools.syntax.textx import parse_with_textx
 from robbdd_tools.syntax.to_trees import convert
 
 LONG = next(chunk.text for chunk in split("bdd", long_story(120)) if chunk.text.startswith("User"))
+STORY_HEAD = "User Story"
 PUBLISHED = """User Story s {
     As A "a" I Want "b" So That "c"
     Scenario Variant one { template: <t> scene: <s> Then: <t.x> is held by <t.y> after <e> <x> can be: - obj <o> }
@@ -155,3 +156,24 @@ def test_a_string_of_several_lines_may_quote_a_scenario_or_braces(quoted: str) -
     read = parse_declaration("bdd", text)
     assert read.faults == ()
     assert [symbol.name for symbol in read.symbols] == ["fetching", "bench-to-tray"]
+
+
+@given(
+    st.sampled_from(STORIES),
+    st.lists(
+        st.tuples(
+            st.floats(0, 0.999),
+            st.integers(0, 30),
+            st.sampled_from(["", "{", "}", '"', "//", "\n", "Scenario", " x {"]),
+        ),
+        min_size=1,
+        max_size=6,
+    ),
+)
+def test_after_edits_a_story_is_cut_as_if_it_were_new(text: str, edits: list[tuple[float, int, str]]) -> None:
+    for where, length, typed in edits:
+        place = len(STORY_HEAD) + int(where * (len(text) - len(STORY_HEAD)))
+        text = f"{text[:place]}{typed}{text[place + length :]}"
+        after_edit = cut_story(text)
+        forget_scan()
+        assert after_edit == cut_story(text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -45,8 +46,10 @@ class Document:
     @cached_property
     def line_starts(self) -> tuple[int, ...]:
         """The offset of the first code point of each line. ``\n``, ``\r\n`` and a lone ``\r`` end a line."""
-        starts = [0]
         text = self.text
+        if "\r" not in text:
+            return (0, *accumulate([len(line) + 1 for line in text.split("\n")[:-1]]))
+        starts = [0]
         index = 0
         while True:
             newline = text.find("\n", index)

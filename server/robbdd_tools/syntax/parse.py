@@ -9,7 +9,9 @@ from robbdd_tools.syntax.declaration import Declaration
 from robbdd_tools.syntax.faults import trailing_fault
 from robbdd_tools.syntax.piece import read_piece
 from robbdd_tools.syntax.salvage import salvage, with_lost
-from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_braces, read_story
+from robbdd_tools.syntax.split import forget_scans
+from robbdd_tools.syntax.story import forget_scenarios, read_story
+from robbdd_tools.syntax.story_cut import cut_story, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols
 
 CACHED_LETTERS = 100_000
@@ -56,6 +58,7 @@ def forget_declarations() -> None:
     """Clear the cache of declarations."""
     _kept.clear()
     forget_scenarios()
+    forget_scans()
 
 
 def _parsed(language: str, text: str) -> Declaration:

@@ -7,14 +7,16 @@ closing brace then breaks one declaration, not the rest of the file.
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
-from collections.abc import Iterator
+from bisect import bisect_left, bisect_right
+from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from robbdd_tools.base.document import edited_part
 
+CACHED_SCANS = 4
+"""Number of texts whose scans are kept."""
 _NAME = r"[^\W\d][\w\-]*"
 _GAP = r"(?:\s|//[^\n]*\n)"
 """Separator between two words: white space and comments."""
@@ -61,33 +63,34 @@ class Chunk:
 
 def split(language: str, text: str) -> tuple[Chunk, ...]:
     """Return the chunks of a text in order. Text before the first declaration is a chunk if it is not blank."""
-    starts = list(_starts(language, text))
+    return _chunks(text, scanned(language, text).starts)
+
+
+def _chunks(text: str, starts: list[int]) -> tuple[Chunk, ...]:
     first = starts[0] if starts else len(text)
     lead = len(text) - len(_LEAD.sub("", text, count=1))
     if lead < first:
-        starts.insert(0, lead)
+        starts = [lead, *starts]
     return tuple(Chunk(start, text[start:end]) for start, end in pairwise((*starts, len(text))))
 
 
 def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tuple[Chunk, ...]:
     """Return ``split(language, new)``, given the chunks of ``old``: only the text around the edit is scanned.
 
-    The splitter's state at the start of a chunk is always the same. So it can restart at a chunk before the edit (the
-    one before the edited chunk, whose end may have moved) and stop when, after the edit, it reaches the start of an old
-    chunk.
+    Chunks before the one before the edited chunk, whose end may have moved, stay the same; so do those after the first
+    start of an old chunk after the edit.
     """
     edited, behind_edit = edited_part(old, new)
     first = bisect_left(chunks, edited, key=lambda chunk: chunk.offset) - 2
     if first < 0:
-        return split(language, new)
+        return _chunks(new, scanned(language, new, (old, edited, behind_edit)).starts)
     shift = len(new) - len(old)
     behind = {chunk.offset + shift: index for index, chunk in enumerate(chunks) if chunk.offset >= behind_edit}
     begin = chunks[first].offset
     starts = [begin]
     rest: tuple[Chunk, ...] = ()
-    for start in _starts(language, new, begin):
-        if start == begin:
-            continue
+    every = scanned(language, new, (old, edited, behind_edit)).starts
+    for start in islice(every, bisect_right(every, begin), None):
         if start in behind:
             rest = tuple(Chunk(chunk.offset + shift, chunk.text) for chunk in chunks[behind[start] :])
             break
@@ -114,22 +117,83 @@ def _scanner(language: str) -> re.Pattern[str]:
     )
 
 
-def _starts(language: str, text: str, position: int = 0) -> Iterator[int]:
-    depth = 0
-    scan = _scanner(language).search
-    while match := scan(text, position):
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """The starts of all chunks of a text, and the splitter's states.
+
+    ``marks`` are the offsets behind all brackets, and ``depths`` the numbers of open brackets there. No token extends
+    over a bracket, so behind one the splitter depends on the depth and on the text that follows only.
+    """
+
+    text: str
+    starts: list[int]
+    marks: list[int]
+    depths: list[int]
+
+
+_scans: OrderedDict[tuple[str, str], Scan] = OrderedDict()
+
+
+def forget_scans() -> None:
+    """Clear the cache of scans."""
+    _scans.clear()
+
+
+def scanned(language: str, text: str, edit: tuple[str, int, int] | None = None) -> Scan:
+    """Return the scan of a text.
+
+    ``edit`` is an earlier text and the part of it that was replaced. If its scan is cached, only that part is scanned.
+    """
+    found = _scans.get((language, text))
+    if found is None:
+        known = None if edit is None else _scans.get((language, edit[0]))
+        if edit is None or known is None:
+            found = Scan(text, [], [], [])
+            _continue(language, found)
+        else:
+            found = _until(known, edit[1], text)
+            _continue(language, found, known, edit[2])
+    _scans[language, text] = found
+    _scans.move_to_end((language, text))
+    if len(_scans) > CACHED_SCANS:
+        _scans.popitem(last=False)
+    return found
+
+
+def _until(known: Scan, edited: int, text: str) -> Scan:
+    """Return the part of a scan up to the last bracket before the edit that leads to another text."""
+    count = bisect_right(known.marks, edited)
+    end = known.marks[count - 1] if count else 0
+    return Scan(text, known.starts[: bisect_left(known.starts, end)], known.marks[:count], known.depths[:count])
+
+
+def _continue(language: str, scan: Scan, known: Scan | None = None, edit_end: int = 0) -> None:
+    """Complete a scan, at most to the first bracket after the edit of a known scan that has the same depth there."""
+    text, starts, marks, depths = scan.text, scan.starts, scan.marks, scan.depths
+    position, depth = (marks[-1], depths[-1]) if marks else (0, 0)
+    shift = 0 if known is None else len(text) - len(known.text)
+    search = _scanner(language).search
+    while match := search(text, position):
         position = match.end()
-        if match["open"]:
-            depth += 1
-        elif match["close"]:
-            depth = max(0, depth - 1)
-        elif match["start"]:
+        if match["start"]:
             begin = match.start()
             # The starter may include an opening bracket or quote: scan it again.
             position = begin + len(match["start"].rstrip("(\"'"))
             if depth == 0 or _starts_line(text, begin):
                 depth = 0
-                yield begin
+                starts.append(begin)
+        elif match["open"] or match["close"]:
+            depth = depth + 1 if match["open"] else max(0, depth - 1)
+            marks.append(position)
+            depths.append(depth)
+            if known is not None and position - shift > edit_end:
+                index = bisect_left(known.marks, position - shift)
+                if known.marks[index : index + 1] == [position - shift] and known.depths[index] == depth:
+                    rest = known.starts[bisect_left(known.starts, position - shift) :]
+                    starts += [start + shift for start in rest]
+                    marks += [mark + shift for mark in known.marks[index + 1 :]]
+                    depths += known.depths[index + 1 :]
+                    return
 
 
 def _starts_line(text: str, offset: int) -> bool:

@@ -8,10 +8,10 @@ another one is parsed; an error stays within its scenario.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import chain, pairwise
+from itertools import chain
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
@@ -21,94 +21,15 @@ from robbdd_tools.syntax.move import InPlace, moved_fault, moved_node, moved_ref
 from robbdd_tools.syntax.piece import Piece, read_piece
 from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
+from robbdd_tools.syntax.story_cut import Cut, forget_scan
 from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
 CACHED_FRAMES = 100
 CACHED_LETTERS = 30_000
 """Characters of scenarios that are kept in addition to the story parsed last, whatever its length."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
-_NAME = r"[^\W\d][\w\-]*"
-_STRING = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
-_SCANNER = re.compile(
-    rf"(?=[/\"'{{}}S])(?://[^\n]*|{_STRING}|(?P<open>{{)|(?P<close>}})"
-    rf"|(?<![\w\-.<])(?P<scenario>Scenario(?![\w\-])(?P<header>(?:\s+Variant(?=\s+{_NAME}))?\s+{_NAME}\s*{{)?))"
-)
-_LONG_STRINGS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
-_BRACE = re.compile(r"[{}]")
 _WORD = "Scenario"
 _NAMELESS = re.compile(rf"{_WORD}\s*{{")
-_STORY = re.compile(r"User\s+Story\b")
-
-
-@dataclass(frozen=True, slots=True)
-class Cut:
-    """The parts of a story's text: the starts of its scenarios, and the start of its closing part."""
-
-    text: str
-    starts: tuple[int, ...]
-    end: int
-
-    @property
-    def head(self) -> str:
-        """The text before the first scenario."""
-        return self.text[: self.starts[0]]
-
-    @property
-    def tail(self) -> str:
-        """The text after the last scenario."""
-        return self.text[self.end :]
-
-    def scenarios(self) -> Iterator[tuple[int, str]]:
-        """Yield the offset and the text of each scenario. The text extends to the next scenario."""
-        return ((start, self.text[start:end]) for start, end in pairwise((*self.starts, self.end)))
-
-
-def cut_story(text: str) -> Cut | None:
-    """Return the parts of a story, ``None`` if the text is not a story with scenarios.
-
-    A scenario starts at its keyword directly inside the story's braces or, with its name and brace, at the beginning of
-    any line: a missing brace then breaks one scenario.
-    """
-    if not _STORY.match(text):
-        return None
-    starts: list[int] = []
-    depth, end = 0, None
-    for match in _SCANNER.finditer(text):
-        if match["open"]:
-            depth += 1
-        elif match["close"]:
-            depth -= 1
-            if depth == 0 and end is None:
-                end = match.start()
-        elif match["scenario"] and (depth == 1 or (match["header"] and _starts_line(text, match.start()))):
-            starts.append(match.start())
-            depth, end = (2 if match["header"] else 1), None
-    if not starts:
-        return None
-    return Cut(text, tuple(starts), _closing_line(text, starts[-1]) if end is None else end)
-
-
-def quotes_braces(text: str) -> bool:
-    """Return whether a multi-line string contains braces, which ``cut_story`` takes for those of a scenario.
-
-    An unclosed quote, as while typing, looks the same.
-    """
-    return any("\n" in match[0] and _BRACE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
-
-
-def _starts_line(text: str, offset: int) -> bool:
-    """Return whether there is only white space before a place in its line."""
-    return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
-
-
-def _closing_line(text: str, start: int) -> int:
-    """Return where a story with too few braces is closed: at a brace further left than its last scenario."""
-    if _starts_line(text, start):
-        column = start - text.rfind("\n", 0, start) - 1
-        for line in re.finditer(r"^([ \t]*)}", text[start:], re.MULTILINE):
-            if len(line[1]) < column:
-                return start + line.end() - 1
-    return len(text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +83,7 @@ _kept = _Kept()
 def forget_scenarios() -> None:
     """Clear the cache of scenarios."""
     _kept.clear()
+    forget_scan()
 
 
 def read_story(cut: Cut) -> Declaration:
