@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
@@ -18,10 +20,12 @@ from robbdd_tools.features.references import uses
 from robbdd_tools.features.rejudged_results import MARK
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, condition_meaning, time_meaning, word_meaning, word_of
-from robbdd_tools.names.elements import elements_of, scene_members, site_of, story_sites
+from robbdd_tools.features.used_names import name_of, uses_by_part
+from robbdd_tools.names.elements import Site, elements_of, scene_members, site_of
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
+from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.names.variant_places import variants_of as placed_variants
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -31,7 +35,7 @@ if TYPE_CHECKING:
     from robbdd_tools.features.clause_results import PassRate, ResultHint
     from robbdd_tools.features.run_verdicts import Findings, JudgedScenario
     from robbdd_tools.names.definition import Definition
-    from robbdd_tools.names.elements import Element, Site
+    from robbdd_tools.names.elements import Element
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variant_places import PlacedVariant
 
@@ -116,13 +120,27 @@ def describe_words(words: str) -> str | None:
 
 def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
     """Yield the variants of a template, both in its own file and in the files that import it."""
+    return (_scenario(site, variant) for site, variant in _variants_of(snapshot, template))
+
+
+def _scenario(site: Site, variant: tree.Variant) -> Scenario:
+    return next(scenario for scenario in scenarios(site) if scenario.variant is variant)
+
+
+def _variants_of(snapshot: Snapshot, template: Definition) -> Iterator[tuple[Site, tree.Variant]]:
+    """Yield the variants of a template that have no syntax error, with their places."""
+    name = name_of(template)
     for uri in (template.uri, *snapshot.importers(template.uri)):
         file = snapshot.file(uri)
-        for site in story_sites(snapshot, file) if file is not None else ():
-            for scenario in scenarios(site):
-                target = scenario.site.target(scenario.variant.template)
-                if target is not None and (target.uri, target.symbol.path) == (template.uri, template.symbol.path):
-                    yield scenario
+        if file is None:
+            continue
+        for placed, spans in uses_by_part(snapshot, file, name):
+            ends = [span.end for span in spans]
+            for node in (clauses.node for clauses in clauses_of(placed.declaration)):
+                if isinstance(node, tree.Variant) and node.template.span.end in ends:
+                    site = Site(snapshot, file, placed)
+                    if site.whole(node):
+                        yield site, node
 
 
 def _title(snapshot: Snapshot, definition: Definition) -> str:
@@ -161,8 +179,8 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
         case SymbolKind.TREE_NODE:
             yield from _tree_node(site, definition)
         case SymbolKind.TEMPLATE:
-            variants = list(variants_of(site.snapshot, definition))
-            for scenario in variants[:MAX_LISTED]:
+            variants = list(_variants_of(site.snapshot, definition))
+            for scenario in (_scenario(*place) for place in variants[:MAX_LISTED]):
                 yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
             if len(variants) > MAX_LISTED:
                 yield f"… and {len(variants) - MAX_LISTED:,} more"
@@ -283,20 +301,21 @@ def _rate_lines(name: str, rate: PassRate, scenarios: Sequence[JudgedScenario]) 
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
-    places = sorted(set(uses(snapshot, definition)), key=lambda place: (place[0], place[1].start))
+    places = list(uses(snapshot, definition))
     if not places:
         yield from () if definition.kind in _COMPLETE else ("not used",)
         return
     times = "once" if len(places) == 1 else f"{len(places)} times"
-    documents = {uri: snapshot.document(uri) for uri, _ in places}
-    lines = dict.fromkeys(
-        literal(f"{_name(uri)}:{documents[uri].position(span.start).line + 1}") for uri, span in places
-    )
-    yield f"used {times}: {_listed(list(lines))}"
+    starts = {uri: snapshot.document(uri).line_starts for uri in {uri for uri, _ in places}}
+    lines = dict.fromkeys([(uri, bisect_right(starts[uri], span.start)) for uri, span in places])
+    words = [literal(f"{_name(uri)}:{line}") for uri, line in islice(lines, MAX_LISTED)]
+    yield f"used {times}: {_listed(words, len(lines))}"
 
 
-def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+def _listed(names: list[str], count: int = 0) -> str:
+    """Return the first of some names, and how many more there are; ``count`` is their number if it is larger."""
+    left = max(count, len(names)) - MAX_LISTED
+    more = f" and {left} more" if left > 0 else ""
     return f"{', '.join(names[:MAX_LISTED])}{more}"
 
 

@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.goto_definition import symbol_at
-from robbdd_tools.names.name_parts import parts_of
+from robbdd_tools.features.used_names import name_of, places_of
 from robbdd_tools.names.types import columns_of
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
@@ -54,7 +53,7 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
     if found is None or file is None:
         return []
     definition = found[1]
-    spans = set(_uses_in(snapshot, file, definition))
+    spans = set(places_of(snapshot, file, name_of(definition)))
     written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else set[Span]()
     if definition.uri == uri:
         spans.add(definition.span)
@@ -74,26 +73,11 @@ def _written(file: FileAnalysis) -> set[Span]:
 
 
 def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
-    """Yield every use of a name, alone or as a part of a qualified name.
+    """Yield every use of a name, alone or as a part of a qualified name, sorted by file and place.
 
     For example, a set is used in the qualified name of its element.
     """
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         file = snapshot.file(uri)
         if file is not None:
-            yield from ((uri, span) for span in _uses_in(snapshot, file, definition))
-
-
-def _uses_in(snapshot: Snapshot, file: FileAnalysis, definition: Definition) -> Iterator[Span]:
-    name = definition.symbol.name
-    for placed in file.parts():
-        checkpoint()
-        for reference in placed.declaration.references:
-            # Comparing text is cheap; only candidates are resolved.
-            if name in reference.ref.path and reference.ref in placed.targets:
-                parts = parts_of(snapshot, file.document.uri, placed, reference)
-                yield from (span for span, meant in parts if _same(meant, definition))
-
-
-def _same(one: Definition, other: Definition) -> bool:
-    return one.uri == other.uri and one.symbol.path == other.symbol.path
+            yield from ((uri, span) for span in places_of(snapshot, file, name_of(definition)))
