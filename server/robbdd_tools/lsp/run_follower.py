@@ -48,6 +48,8 @@ class RunFollower:
         self._loop = asyncio.get_running_loop()
         self._shared_fault = ""
         self._causes: dict[int, Causes] = {}
+        self._ended: dict[int, Outcome] = {}
+        self._outcomes: Counter[Outcome] = Counter()
         self._begun: dict[str, set[tuple[int, str, int | None]]] = {}
         run.listen(self._hear)
 
@@ -122,7 +124,7 @@ class RunFollower:
                 self._fault(index, fault)
             case ScenarioFinished(index):
                 self._scenario(index).finished = True
-                self._report_progress()
+                self._report_progress(index)
             case _:
                 pass
         params = for_client(self._active.id, self._text, self._results, message, cancelled=left_open, because=because)
@@ -174,9 +176,13 @@ class RunFollower:
             self._scenario(message.index).judge(clause.iri, found)
             self._ls.show_results(self._text.places.uris)
 
-    def _report_progress(self) -> None:
-        finished = (scenario for scenario in self._results.scenarios if scenario.finished is not None)
-        self._progress.report(Counter(scenario.verdict for scenario in finished), len(self._results.scenarios))
+    def _report_progress(self, finished: int) -> None:
+        """Count a scenario that has finished. A scenario that finishes again counts once, with its last verdict."""
+        if finished in self._ended:
+            self._outcomes[self._ended[finished]] -= 1
+        self._ended[finished] = self._results.scenarios[finished].verdict
+        self._outcomes[self._ended[finished]] += 1
+        self._progress.report(self._outcomes, len(self._results.scenarios))
 
     def _outcome(self) -> str:
         words = f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
