@@ -37,7 +37,9 @@ PEER = {
 """Recorded figures of the server of secoro-dsl-nvim, on a machine of the same kind (2 cores at 2.5 GHz), not in this
 run: what it needs comes from no package registry. Files of the same length are not the same files."""
 ON_EVERY_STROKE = ("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange")
-"""Requests of VS Code after each change of a text."""
+"""Requests of VS Code after each change of a text. It requests hints of the visible lines only."""
+VISIBLE = 60
+"""Lines that an editor shows."""
 STAMPS = """import os, time
 from pathlib import Path
 from robbdd_tools.agent.execution import Execution
@@ -101,7 +103,9 @@ class Session:
         document = {**self.document["textDocument"], "version": self.version}
         changes = [{"range": {"start": place, "end": place}, "text": letter}]
         self.client.notify("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
-        more = {"previousResultId": self._coloured, "range": {"start": self.position(0), "end": place}}
+        shown = {"line": max(0, place["line"] - VISIBLE // 2), "character": 0}
+        visible = {"start": shown, "end": {"line": shown["line"] + VISIBLE, "character": 0}}
+        more = {"previousResultId": self._coloured, "range": visible}
         methods = ON_EVERY_STROKE if asking else ()
         asked = [self.client.ask(f"textDocument/{method}", {**self.document, **more}) for method in methods]
         answers = [self.client.answer(number) for number in asked]
