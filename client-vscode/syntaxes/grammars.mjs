@@ -56,7 +56,7 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   declaration(DECLARE, "entity.name.type.composition", "comp"),
   declaration(DECLARE, "variable.other.constant", "object", "workspace", "agent"),
   property(PROPERTY, "variable.other.constant", "base name"),
-  labels(PROPERTY, "base name", "count"),
+  labels(PROPERTY, "base name", "count", "correct for"),
   // What stays of a declaration that is still being typed, and links to sets and compositions.
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
   phrases(DECLARE, "object", "workspace", "agent"),
@@ -77,6 +77,8 @@ const predicates = phrases(
   "is at rest",
   "is entirely inside",
   "is on top of",
+  "is correct for",
+  "are sorted correctly into",
   "touches",
   "does not touch",
   "presses",

@@ -51,6 +51,8 @@ DAMAGE: dict[str, list[str]] = {
     "composition-workspaces": ["+ lab:bench_comp env:has-workspace lab:nut"],
     "condition-role": ["- t:at bdd:clause-of", "+ t:at bdd:clause-of t:fetch-scenario-when"],
     "coordination-node-one": ["+ t:pick rbw:coordination-node t:fetch"],
+    "correct-objects": ["+ lab:tray_ws rbw:correct-for lab:panda"],
+    "correct-workspace": ["+ lab:tray rbw:correct-for lab:nut"],
     "during-end": ["- t:drop time:before-event"],
     "during-start": ["- t:drop time:after-event"],
     "element-value": [f"set {TABLE} bdd:rows ((lab:nut 7 lab:tray_ws 1 2 ()))"],

@@ -11,7 +11,7 @@ from rdflib.compare import isomorphic
 from graph.models import EVERYTHING
 from graph.statements import built
 from graph.test_foreign import FOREIGN
-from kit import EXAMPLES, MODEL, corpus
+from kit import EXAMPLES, MODEL, SCENE, corpus
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.acceptance_model import AcceptanceModel
 from robbdd_tools.graph.rdf.serialize import parse, serialize
@@ -53,7 +53,12 @@ def of_file(path: Path) -> Graph:
     return build_graph(project.snapshot(), path_to_uri(path)).graph
 
 
-@pytest.mark.parametrize("text", [MODEL, EVERYTHING], ids=["small", "every construct"])
+CORRECT = f"//- main.bdd\n{MODEL}//- lab.scene\n" + SCENE.replace(
+    "workspace tray_ws }", "workspace tray_ws { correct for: obj <parts.bolt>, obj set <washers> } }"
+)
+
+
+@pytest.mark.parametrize("text", [MODEL, EVERYTHING, CORRECT], ids=["small", "every construct", "correct places"])
 def test_text_is_found_again(text: str) -> None:
     graph = built(text).graph
     assert_identity(graph)

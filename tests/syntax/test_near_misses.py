@@ -56,10 +56,20 @@ def changed(old: str, new: str) -> str:
         (
             changed(IN_TRAY, "in-tray: holds(isCorrect(<goal>), after <place-end>)"),
             "isCorrect",
-            "the language has no such predicate: write 'pred(",
+            "the language has no such predicate: write '<workspace> is correct for <object>'",
         ),
         (
             changed(IN_TRAY, "isCorrect(<goal>) after <place-end>"),
+            "(",
+            "the language has no such predicate: write '<workspace> is correct for <object>'",
+        ),
+        (
+            changed(IN_TRAY, "in-tray: holds(isTidy(<goal>), after <place-end>)"),
+            "isTidy",
+            "the language has no such predicate: write 'pred(",
+        ),
+        (
+            changed(IN_TRAY, "isTidy(<goal>) after <place-end>"),
             "(",
             "the language has no such predicate: write 'pred(",
         ),

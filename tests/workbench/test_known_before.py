@@ -26,6 +26,7 @@ KNOWN_BEFORE = {
     "setting": r"there is no configuration '|cannot be (configured: |'.*': it must be )| has no \w+: it applies to ",
     "single-element": r"needs one \w+, not a set of them",
     "no-room": r"there is room for ",
+    "no-correct-place": r"the scene states no workspace that is correct for ",
     "no-region": r"nothing in the scene carries that workspace",
     "execution-fit": r"does not execute '|a distance is between two elements",
     "model-file": r"there is no model file ",
@@ -103,6 +104,12 @@ PICKPLACE = {
         "pickplace.bdd",
         "<thing> is held by <robot>, after",
         "pred('{o} is safe', o=<thing>), after",
+        ("", ""),
+    ),
+    "no-correct-place": (
+        "pickplace.bdd",
+        "<thing> is held by <robot>, after",
+        "<goal> is correct for <thing>, after",
         ("", ""),
     ),
     "no-region": (

@@ -89,6 +89,26 @@ def test_the_criteria_of_the_paper_are_judged_and_the_text_among_them_is_known_b
     assert placed == [*["holds"] * 4, "unknown"]
 
 
+@pytest.mark.physics
+@pytest.mark.parametrize("correct", ["ws-bin1", "ws-bin2"])
+def test_the_criterion_of_the_correct_container_is_judged(correct: str, folder: Path) -> None:
+    path, scene = folder / "criteria.bdd", folder / "criteria.scene"
+    text = path.read_text(encoding="utf-8")
+    free = 'pred("{container} is correct for {obj}", container=<container>, obj=<target-obj>)'
+    assert free in text
+    path.write_text(text.replace(free, "<container> is correct for <target-obj>"), encoding="utf-8")
+    elements = scene.read_text(encoding="utf-8")
+    stated = f"workspace {correct} {{ correct for: obj set <lab_objects> }}"
+    assert f"workspace {correct}" in elements
+    scene.write_text(elements.replace(f"workspace {correct}", stated), encoding="utf-8")
+    model = robbdd.load(path)
+    assert [one for one in model.diagnostics if one.severity < robbdd.Severity.INFORMATION] == []
+    with Plan.of(model, Selection()).run(seed=1, keeping=Keeping(keep=False)) as run:
+        _, _, *placed = ([clause.verdict for clause in result.clauses] for result in run.results)
+    verdict = "holds" if correct == "ws-bin1" else "violated"
+    assert placed == [[*["holds"] * 4, verdict]] * 2
+
+
 PLACED = """import "cell.scene"
 ns sim = 'https://example.org/sim/'
 scene inst (ns=sim) placed {

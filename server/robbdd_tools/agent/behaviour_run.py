@@ -142,6 +142,7 @@ class BehaviourRun:
         self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
         self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
+        self.correct_places = spec.scene.correct_places
         self.settings = read_back(self.simulation, spec.scene)
         self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
         self._settle()

@@ -88,7 +88,9 @@ class Execution:
         course = self.course
         events = tuple(replace(stamp, name=name) for stamp in course.stamps for name in self._names.get(stamp.name, ()))
         trace = course.simulation.trace(events, course.finished, course.remark)
-        trace = replace(trace, unreached=self._unreached(), contents=course.contents)
+        trace = replace(
+            trace, unreached=self._unreached(), contents=course.contents, correct_places=course.correct_places
+        )
         if course.tree is None:
             return trace
         executions, pending = course.tree.executions, course.tree.pending

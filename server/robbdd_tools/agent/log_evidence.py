@@ -65,6 +65,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         settings={pair: written(value) for pair, value in cast.judged.items()},
         outlines={name: outline_of(model) for name, model in cast.objects.items()},
         contents={workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains},
+        correct_places=spec.scene.correct_places,
         log=Path(request.path).name,
         truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
         immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),

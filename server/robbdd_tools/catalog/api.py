@@ -95,10 +95,7 @@ class Evidence(Protocol):
         ...
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Return the position at the last sample at or before each of ``times`` (n,), shape (n, 3).
-
-        The samples may be in the window or before it.
-        """
+        """Position at the last sample, in the window or before it, at or before each of ``times`` (n,), (n, 3)."""
         ...
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
@@ -115,6 +112,10 @@ class Evidence(Protocol):
 
     def contents(self, workspace: str) -> Sequence[str]:
         """Return the workspaces inside this one, at any depth."""
+        ...
+
+    def correct_places(self, name: str) -> Sequence[str]:
+        """Return the workspaces that are stated to be correct for an object; *unknown* if none is stated."""
         ...
 
     @property
@@ -192,7 +193,7 @@ class Predicate:
       are sampled only in the windows of clauses that need them.
     - ``duration``: set if the predicate is about the time between the two events of ``from … until …`` instead of the
       states at samples. Then ``evaluate`` is for plots only.
-    - ``set_up``: true if the predicate is set up before the scenario starts instead of observed.
+    - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     """
 
     name: str

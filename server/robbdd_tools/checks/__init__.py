@@ -28,6 +28,7 @@ from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.model_name import model_name
 from robbdd_tools.checks.namespace_iri import namespace_iri
+from robbdd_tools.checks.no_correct_place import no_correct_place
 from robbdd_tools.checks.no_emitter import no_emitter
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.checks.no_model import no_model
@@ -90,6 +91,7 @@ FILE_RULES = (
     model_file,
     model_name,
     namespace_iri,
+    no_correct_place,
     no_evaluator,
     no_model,
     no_room,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, sort_key
 from robbdd_tools.checks.graph_clauses import clause_findings
+from robbdd_tools.checks.graph_correct_places import place_findings
 from robbdd_tools.checks.graph_executions import execution_findings
 from robbdd_tools.checks.graph_scenes import scene_findings
 from robbdd_tools.checks.graph_site import GraphSite
@@ -20,5 +21,7 @@ if TYPE_CHECKING:
 def graph_findings(built: BuiltGraph) -> list[Diagnostic]:
     """Return the findings on the acceptance criteria of a graph file. Incomplete variants are skipped."""
     site = GraphSite.of(built)
-    found = dict.fromkeys((*scene_findings(site), *clause_findings(site), *execution_findings(site)))
+    found = dict.fromkeys(
+        (*scene_findings(site), *place_findings(site), *clause_findings(site), *execution_findings(site))
+    )
     return sorted(found, key=sort_key)

@@ -6,7 +6,7 @@ The data depends neither on RDF nor on source text, so a model that was never wr
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from robbdd_tools.base.selections import SelectionRule
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
@@ -298,6 +298,7 @@ class AcceptanceModel:
     - ``sets``: the constant sets.
     - ``prefixes``: maps each prefix to its namespace, for writing CURIEs.
     - ``executions``: the executions in written order.
+    - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
     """
 
     stories: tuple[Story, ...]
@@ -306,6 +307,7 @@ class AcceptanceModel:
     prefixes: Mapping[str, str]
     executions: tuple[Execution, ...] = ()
     trees: tuple[BehaviourTree, ...] = ()
+    correct_places: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
 
     def curie(self, iri: str) -> str:
         """Shorten an IRI by the longest namespace that it starts with. If there is none, return the IRI unchanged."""

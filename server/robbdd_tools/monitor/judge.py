@@ -166,6 +166,13 @@ class WindowEvidence:
         """Return the names of the workspaces inside a workspace, at any depth."""
         return self.trace.contents.get(workspace, ())
 
+    def correct_places(self, name: str) -> Sequence[str]:
+        """Return the workspaces that are stated to be correct for an object. Raises ``Unobserved`` if none is."""
+        places = self.trace.correct_places.get(name, ())
+        if not places:
+            raise Unobserved(f"the scene states no workspace that is correct for {name}")
+        return places
+
     @property
     def workspaces(self) -> Sequence[str]:
         """Return the names of the workspaces that have regions."""

@@ -64,6 +64,7 @@ class Trace:
     - ``outlines``: the extent of each object around its position.
     - ``unreached``: the reason if the scenario is a part of a behaviour tree that never began; then it is not judged.
     - ``contents``: maps a workspace to the workspaces inside it, at any depth.
+    - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
     - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
     - ``pending``: the events that could occur again if the execution continued.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
@@ -95,6 +96,7 @@ class Trace:
     truths: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
     touches: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     touch_watched: tuple[str, ...] = ()
+    correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
     @property
     def end(self) -> float:

@@ -31,6 +31,7 @@ class SceneSpec:
     - ``places``: maps an object to the workspace where the Given clauses put it.
     - ``config``: the configurations that the Given clauses set.
     - ``unused``: the objects and agents that no clause mentions.
+    - ``correct_places``: maps an object to the workspaces that the model states to be correct for it.
     - ``sets``: maps elements to the local names of their sets, where models are chosen by name.
     """
 
@@ -42,6 +43,7 @@ class SceneSpec:
     config: tuple[ConfigSpec, ...] = ()
     unused: tuple[str, ...] = ()
     sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,6 +89,9 @@ class SpecWriter:
             for element in elements:
                 known = self._sets.get(self._curie(str(element)), ())
                 self._sets[self._curie(str(element))] = (*known, self._curie(name).rpartition(":")[2])
+        self._correct_places = {
+            self._curie(thing): tuple(map(self._curie, places)) for thing, places in model.correct_places.items()
+        }
         self.execution = None if execution is None else self._execution(execution)
 
     def _execution(self, execution: Execution) -> ExecutionSpec:
@@ -220,6 +223,7 @@ class SpecWriter:
             tuple(config),
             tuple(name for name in (*objects, *agents) if name not in used),
             {name: sets for name in (*objects, *agents) if (sets := self._sets.get(name))},
+            {name: correct for name in objects if (correct := self._correct_places.get(name))},
         )
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:

@@ -41,6 +41,7 @@ def _as_set(before: re.Match[str]) -> SyntaxFix:
 
 _OWN_PREDICATE = """the language has no such predicate: write 'pred("{x} is …", x=<variable>)', \
 which a policy or a step function judges"""
+_CORRECT = "the language has no such predicate: write '<workspace> is correct for <object>'"
 _NEAR_MISSES = (
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
@@ -60,6 +61,8 @@ _NEAR_MISSES = (
     NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
     NearMiss(r"\b(?:before|after)\s+\Z", r"(?:first|last)\b(?=\s*<)", "write 'the' before it", "the", "the {}".format),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
+    NearMiss(r"", r"isCorrect\s*(?=\(\s*<)", _CORRECT, "<"),
+    NearMiss(r"\bisCorrect\s*\Z", r"\((?=\s*<)", _CORRECT, ":"),
     NearMiss(r"", rf"(?!not\b|pred\b|holds\b){_NAME}\s*(?=\(\s*<)", _OWN_PREDICATE, "<"),
     NearMiss(rf"(?<![\w\-.<])(?!(?:Given|When|Then)\b){_NAME}\s*\Z", r"\((?=\s*<)", _OWN_PREDICATE, ":"),
     NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),

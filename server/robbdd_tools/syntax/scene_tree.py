@@ -99,10 +99,18 @@ class CatalogEntry(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Link(Node):
+    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind."""
+
+    reference: Ref
+
+
+@dataclass(frozen=True, slots=True)
 class Member(Node):
-    """An object, workspace or agent inside its set."""
+    """An object, workspace or agent inside its set. ``correct_for`` are the objects that belong in a workspace."""
 
     name: Name
+    correct_for: tuple[Link, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,13 +132,6 @@ class SimilarSet(Node):
     name: Name
     base: Name
     count: Number
-
-
-@dataclass(frozen=True, slots=True)
-class Link(Node):
-    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind."""
-
-    reference: Ref
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -49,7 +49,19 @@ def read_model(graph: Graph, places: Places = _nowhere, records: Records | None 
     every = tuple(reader.story(node) for node in stories)
     executions = read_executions(records, InstanceReader(records, sets, places), places)
     trees = read_trees(records, places)
-    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees)
+    correct = _correct_places(records, sets)
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct)
+
+
+def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> dict[Iri, tuple[Iri, ...]]:
+    """Return the workspaces that are correct for each object, in the order of their IRIs."""
+    found: dict[Iri, dict[Iri, None]] = {}
+    for workspace in records.subjects("rbw:correct-for"):
+        for stated in records.iris(records.all(workspace, "rbw:correct-for")):
+            for thing in sets.get(stated, (stated,)):
+                if isinstance(thing, Iri):
+                    found.setdefault(thing, {})[workspace] = None
+    return {thing: tuple(places) for thing, places in found.items()}
 
 
 def read_instances(

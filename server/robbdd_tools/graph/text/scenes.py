@@ -118,7 +118,14 @@ class SceneText:
         base = names[0].removesuffix("0") if names else kind
         if count == len(names) and names == [f"{base}{index}" for index in range(len(names))]:
             return f"similar {head} {{ base name: {base}  count: {count} }}"
-        return f"{head} {braces(f'{kind} {name}' for name in names)}"
+        entries = (f"{kind} {name}{self._fitting(member, kind)}" for member, name in zip(members, names, strict=True))
+        return f"{head} {braces(entries)}"
+
+    def _fitting(self, member: str, kind: str) -> str:
+        """Return what a workspace is correct for, in braces; empty if the graph does not state it."""
+        stated = map(str, self.names.records.all(member, "rbw:correct-for")) if kind == "workspace" else ()
+        found = sorted(node for node in stated if self.kinds.get(node, self._elements.get(node)) == "object")
+        return f" {{ correct for: {', '.join(map(self._entry, found))} }}" if found else ""
 
     def _composition(self, node: Iri) -> Iterator[str]:
         records, names = self.names.records, self.names

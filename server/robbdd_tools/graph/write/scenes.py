@@ -118,8 +118,17 @@ def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> 
             frame.sink.add_types(element, [ELEMENT_TYPES[declared.kind]], frame.at(member.name))
             frame.sink.mark(node, "bdd:elements", element, frame.at(member.name))
             members.append(element)
+            _add_fitting_objects(frame, element, member)
     scenes.sets[node] = (declared.kind, tuple(members))
     add_set(frame, node, declared.name, members)
+
+
+def _add_fitting_objects(frame: Frame, workspace: URIRef, member: tree.Member) -> None:
+    """Add the objects, or sets of objects, for which a workspace is the correct place."""
+    for link in member.correct_for:
+        target = frame.target(link.reference)
+        if target is not None:
+            frame.sink.add(workspace, "rbw:correct-for", target, frame.at(link.reference))
 
 
 def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> None:

@@ -1,0 +1,51 @@
+"""Each object of a set is inside a workspace that is correct for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.geometry import inside_margin
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+
+MISPLACED = 1e-4
+"""Least distance (m) that counts for an object in no workspace that is correct for it."""
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Margin (m) of the object with the smallest margin to be inside any workspace that is correct for it, shape (n,).
+
+    If none of the workspaces is correct for an object, its margin is the negative distance from the faces of the
+    nearest of them. Raises ``Unobserved`` if the scene states no correct workspace for an object.
+    """
+    import numpy as np
+
+    workspaces = tuple(arguments["workspaces"])
+    margins: list[FloatArray] = []
+    for name in arguments["objects"]:
+        correct = evidence.correct_places(name)
+        chosen = [workspace for workspace in workspaces if workspace in correct]
+        inside = np.max([inside_margin(evidence, name, (place,)) for place in chosen or workspaces], axis=0)
+        margins.append(inside if chosen else np.minimum(-np.abs(inside), -MISPLACED))
+    return np.min(margins, axis=0)
+
+
+ARE_SORTED_CORRECTLY = Predicate(
+    name="are-sorted-correctly",
+    phrase="<objects> are sorted correctly into <workspaces>",
+    rdf_type="rbw:AreSortedCorrectlyPredicate",
+    slots=(
+        Slot("objects", Kind.OBJECT_SET, "bdd:ref-object"),
+        Slot("workspaces", Kind.WORKSPACE_SET, "bdd:ref-workspace"),
+    ),
+    sentence='"{objects}" are sorted correctly into "{workspaces}"',
+    unit="m",
+    doc=(
+        "Every object of the set lies in a workspace of the set that is correct for it: 'workspace bin { correct for: "
+        "obj <part> }' in the scene. Unknown for an object without a stated workspace."
+    ),
+    evaluate=margin,
+)

@@ -1,0 +1,46 @@
+"""Objects of a graph without a stated correct workspace, in clauses that ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.checks.graph_site import members, values_of
+from robbdd_tools.checks.no_correct_place import CODE, WORDS, no_place
+from robbdd_tools.graph.acceptance_model import Exists, Fluent, ForAll, Iri, every_clause
+
+if TYPE_CHECKING:
+    from robbdd_tools.checks.graph_site import GraphSite
+    from robbdd_tools.graph.acceptance_model import Condition, Variant
+
+
+def place_findings(site: GraphSite) -> Iterator[Diagnostic]:
+    """Report each such object once."""
+    reported: set[Iri] = set()
+    for variant in site.variants:
+        asked = _asked(variant)
+        for variable, cell in values_of(variant) if asked else ():
+            for value in members(cell) if variable in asked else ():
+                if not isinstance(value, Iri) or value in reported:
+                    continue
+                if site.model.kinds.get(value) == "object" and value not in site.model.correct_places:
+                    reported.add(value)
+                    yield site.finding(value, CODE, no_place(site.local_name(value)), Severity.WARNING)
+
+
+def _asked(variant: Variant) -> frozenset[str]:
+    """Return the variables of the objects whose correct places clauses ask for."""
+    clauses = tuple(every_clause((*variant.template.clauses, *variant.clauses)))
+    sets = {clause.variable: clause.in_set for clause in clauses if isinstance(clause, ForAll | Exists)}
+    asked: set[str] = set()
+    for clause in clauses:
+        used: list[Fluent | Condition] = [clause] if isinstance(clause, Fluent) else []
+        condition = getattr(clause, "condition", None)
+        if condition is not None:
+            used.append(condition)
+        for one in used:
+            if one.predicate in WORDS:
+                slots = (one.arguments.get("object"), one.arguments.get("objects"))
+                asked.update(str(name) for name in slots if name is not None)
+    return frozenset(asked | {str(sets[Iri(name)]) for name in asked if name in sets})

@@ -1,0 +1,109 @@
+"""``no-correct-place``: the scene states no workspace that is correct for an object of a clause that asks for it.
+
+A run leaves the clause unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.template_variants import Scenario, scenarios
+from robbdd_tools.names.elements import Site, element_of, elements_of, story_sites
+from robbdd_tools.names.types import uses_by_variable, variable_key, written_elements
+from robbdd_tools.names.uses import phrase_words
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.uses import Clauses
+    from robbdd_tools.syntax.declaration import Declaration
+
+CODE = "no-correct-place"
+Key = tuple[str, str]
+WORDS = ("is-correct-for", "are-sorted-correctly")
+"""The predicates that need the relation."""
+
+
+def no_correct_place(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each such object once for each variant, at its first occurrence among the values."""
+    placed: frozenset[Key] | None = None
+    for site in story_sites(snapshot, file):
+        for scenario in scenarios(site):
+            asked = _asked(scenario)
+            if asked and placed is None:
+                placed = _placed(snapshot, file)
+            if asked and placed is not None:
+                yield from _missing(scenario, asked, placed)
+
+
+def _missing(
+    scenario: Scenario, asked: dict[str, tuple[Site, tree.Ref]], placed: frozenset[Key]
+) -> Iterator[Diagnostic]:
+    site = scenario.site
+    reported: set[Key] = set()
+    for column in scenario.columns:
+        clause = None if column.variable is None else asked.get(variable_key(column.variable))
+        if clause is None:
+            continue
+        for node, element in (found for one in column.written for found in written_elements(site, one)):
+            if element.kind != "object" or element.key in placed or element.key in reported:
+                continue
+            reported.add(element.key)
+            yield finding(
+                site, node, Severity.WARNING, CODE, no_place(element.name), (related_to(*clause, "the clause"),)
+            )
+
+
+def no_place(name: str) -> str:
+    """Return the message on an object without a stated workspace."""
+    return (
+        f"no workspace is correct for '{name}', so that clauses that ask for it stay unknown: "
+        "write 'workspace NAME { correct for: obj <…> }' in the scene"
+    )
+
+
+def _asked(scenario: Scenario) -> dict[str, tuple[Site, tree.Ref]]:
+    """Return the variables of the objects whose correct places clauses ask for, each with its first occurrence."""
+    found: dict[str, tuple[Site, tree.Ref]] = {}
+    for site, clauses in ((scenario.template, scenario.outer), (scenario.site, scenario.clauses)):
+        if site is None or clauses is None or not _asks(clauses):
+            continue
+        phrases = {phrase_words(word) for word in WORDS}
+        for key, uses in uses_by_variable(site, clauses).items():
+            for use in uses:
+                if use.phrase in phrases and "object" in use.kinds:
+                    found.setdefault(key, (site, use.ref))
+    return found
+
+
+def _asks(clauses: Clauses) -> bool:
+    return any(phrase.word in WORDS for phrase in clauses.phrases)
+
+
+def _placed(snapshot: Snapshot, file: FileAnalysis) -> frozenset[Key] | None:
+    """Return the objects for which a workspace is correct; ``None`` if they are not completely known."""
+    found: set[Key] = set()
+    for one in snapshot.closure(file.document.uri):
+        for declared in one.declarations:
+            for link in _stated(declared.declaration):
+                site = Site(snapshot, one, declared)
+                element = element_of(site, link.reference) if link.reference.role == "Object" else None
+                members = (element,) if element is not None else elements_of(site.follow(link.reference))
+                if members is None:
+                    return None
+                found.update(member.key for member in members)
+    return frozenset(found)
+
+
+@kept_with_key
+def _stated(declaration: Declaration) -> tuple[tree.Link, ...]:
+    """Return what the workspaces of a declaration are correct for."""
+    root = declaration.tree
+    members = root.members if isinstance(root, tree.ElementSet) else ()
+    return tuple(link for member in members for link in member.correct_for)
