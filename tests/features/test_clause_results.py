@@ -10,6 +10,7 @@ from gherkin_kit import edited
 from kit import MODEL, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate, row_hints
+from robbdd_tools.features.hover import hover
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import (
     Findings,
@@ -318,3 +319,18 @@ def test_results_of_deleted_variants_are_forgotten_in_their_model_alone() -> Non
     results = Results(entries)
     results.drop_deleted("a", {"w"})
     assert [(entry.model, entry.variant) for entry in results] == [("a", "w"), ("b", "x")]
+
+
+def test_the_result_is_in_the_hover_everywhere_in_a_clause_with_what_the_word_means() -> None:
+    case = fixture(MODEL)
+    findings = judged(case, HOLDS, VIOLATED)
+    text = case.snapshot.document(case.uri).text
+    start = text.index("in-tray: holds")
+    line = text[start : text.index("\n", start)]
+    found = [hover(case.snapshot, case.uri, start + place, findings) for place in range(len(line))]
+    assert [place for place, one in enumerate(found) if one is None or "−12 mm" not in one.markdown] == []
+    judgements = {one.judged[1].outcome for one in found if one is not None and one.judged is not None}
+    assert (judgements, len([one for one in found if one is not None and one.judged])) == ({"violated"}, len(line))
+    on_name = found[line.index("<part>") + 1]
+    assert on_name is not None
+    assert on_name.markdown.startswith("**variable** `fetch.part`")
