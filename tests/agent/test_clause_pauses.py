@@ -13,7 +13,7 @@ import pytest
 from kit import schema_errors
 from robbdd_tools.agent.channel import Channel, use_channel
 from robbdd_tools.agent.clause_debugger import ClauseDebugger, Pauses, use_pauses
-from robbdd_tools.agent.session import ScenarioRun
+from robbdd_tools.agent.scenario_run import ScenarioRun
 from robbdd_tools.agent.violation_states import ViolationStates
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.time import During

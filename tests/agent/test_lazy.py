@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robbdd_tools.agent.channel import Channel
-from robbdd_tools.agent.session import ScenarioRun
+from robbdd_tools.agent.scenario_run import ScenarioRun
 from robbdd_tools.agent.violation_states import ViolationStates
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.verdict import Outcome

@@ -43,7 +43,7 @@ VISIBLE = 60
 STAMPS = """import os, time
 from pathlib import Path
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.agent.session import ScenarioRun
+from robbdd_tools.agent.scenario_run import ScenarioRun
 advance, report = Execution.advance_until, ScenarioRun._report
 def stamped(self, satisfied):
     trace = advance(self, satisfied)

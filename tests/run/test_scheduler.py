@@ -16,6 +16,7 @@ from kit import make_fifo
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
+    ClauseStarted,
     LogLine,
     Output,
     RunFinished,
@@ -194,8 +195,10 @@ def fifo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_hang_is_timed_out_and_the_rest_goes_on(tmp_path: Path, fifo: Path) -> None:
     manifest = prepared(tmp_path / "run", [HOLDS], [HOLDS, ("given", "a hang")], [HOLDS])
     threading.Thread(target=fifo.read_bytes, daemon=True).start()
-    results, _, _ = run(tmp_path / "run", manifest, Policy(2, timeout=10.0))
+    results, messages, _ = run(tmp_path / "run", manifest, Policy(2, timeout=10.0))
     assert verdicts(results) == ["holds", "unknown", "holds"]
+    begun = [message.line for message in messages if isinstance(message, ClauseStarted) and message.index == 1]
+    assert begun == [clause.line for clause in manifest.scenarios[1].clauses], "each once, the user's step, too"
     assert reasons_without_places(results, 1) == {"", "model_steps:hang failed: timed out after 10 s"}
     assert results.complete
 

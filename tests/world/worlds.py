@@ -81,7 +81,7 @@ class Steps:
 def write_run(folder: Path, scenarios: Sequence[Steps]) -> tuple[ScenarioSpec, ...]:
     """Write a run folder with one feature as the parent process would; returns its scenarios."""
     (folder / "features" / "steps").mkdir(parents=True)
-    hooks = "after_all, after_scenario, after_step, before_all, before_scenario"
+    hooks = "after_all, after_scenario, after_step, before_all, before_scenario, before_step"
     (folder / "features" / "environment.py").write_text(f"from robbdd_tools.agent.hooks import {hooks}\n")
     (folder / "features" / "steps" / "all.py").write_text(
         "from robbdd_tools.agent.steps import register\n\nregister()\n"

@@ -16,7 +16,7 @@ from robbdd_tools.protocol.fault_places import original
 from robbdd_tools.protocol.manifest_file import MANIFEST, read_manifest
 from robbdd_tools.user_code.calls import fault_of
 
-__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
+__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario", "before_step"]
 EXECUTION = "robbdd.execution"
 """Key of behave's user data for the manifest's scenario number: several may share a feature's scenario."""
 
@@ -37,6 +37,11 @@ def before_scenario(context: Any, scenario: Any) -> None:
     handed_out = context.config.userdata.get(EXECUTION)
     index = None if handed_out is None else int(handed_out)
     context.session.start(Path(scenario.filename), int(scenario.line), texts, index)
+
+
+def before_step(context: Any, step: Any) -> None:
+    """Report that the judgement of the step's clause begins, whoever defined the step."""
+    context.session.step_started(int(step.line))
 
 
 def after_step(context: Any, step: Any) -> None:

@@ -16,7 +16,7 @@ from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
-    from robbdd_tools.agent.session import ScenarioRun
+    from robbdd_tools.agent.scenario_run import ScenarioRun
 
 TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variable scene elements")
 """Steps that list the scene for the reader; the manifest has the same data."""

@@ -24,9 +24,9 @@ FEATURES = "features"
 MODEL_STEPS = "model_steps.py"
 _ENVIRONMENT = '''"""Hooks that manage the simulated world during a behave run."""
 
-from robbdd_tools.agent.hooks import after_all, after_scenario, after_step, before_all, before_scenario
+from robbdd_tools.agent.hooks import after_all, after_scenario, after_step, before_all, before_scenario, before_step
 
-__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
+__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario", "before_step"]
 '''
 _STEPS = '''"""Steps for every sentence that the catalog knows."""
 

@@ -134,6 +134,9 @@ step("a run that is cancelled ends, sooner than it began", async () => {
     await tests.runRow("endless-bench");
     await tests.turns("run", "endless-bench");
   });
+  // The ball's own step never ends: its scenario is being executed, not queued.
+  await workbench.status.filter({ hasText: "2/4" }).waitFor();
+  await tests.turns("run", "endless-bench");
   const ending = await timed(async () => {
     await workbench.page.locator('.part.sidebar [aria-label^="Cancel Test Run"]').first().click();
     await tests.rowsThat("run").first().waitFor({ state: "detached" });
