@@ -44,6 +44,14 @@ test("*holds* is drawn after its clause, other verdicts before it, but after the
   assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", "", "", ""]);
 });
 
+for (const [columns, words] of [[60, "? unknown"], [61, "? unknown it timed out"]] as const) {
+  test(`in a line of ${columns} columns the verdict before the clause is "${words}"`, () => {
+    const document = { lineAt: () => ({ text: "x".repeat(columns), firstNonWhitespaceCharacterIndex: 0 }) } as unknown as TextDocument;
+    const data = { verdict: "unknown", stale: false, reason: "it timed out" };
+    assert.deepEqual(marksOfHints(document, [hint(0, columns, "? unknown", data)]).map((mark) => mark.words), [words]);
+  });
+}
+
 test("the reason is before a clause in a long line, after which it would be out of sight", () => {
   const long = `    at-goal: holds(${"<thing> is located at <goal>, ".repeat(3)})`;
   const document = { lineAt: () => ({ text: long, firstNonWhitespaceCharacterIndex: 4 }) } as unknown as TextDocument;

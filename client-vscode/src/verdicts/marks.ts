@@ -24,8 +24,8 @@ export interface Mark extends Appearance {
   readonly tooltip: string;
 }
 
-/** Columns of a line after which there is no room for a reason in a window of usual size. */
-const LONG_LINE = 80;
+/** Columns of a line after which a window of usual size (1,360 px) cuts the reason short by an ellipsis. */
+const LONG_LINE = 60;
 
 type Text = Pick<vscode.TextDocument, "lineAt">;
 

@@ -66,10 +66,15 @@ function messages(editor) {
   const edge = document.querySelector(editor).getBoundingClientRect().right;
   return [...document.querySelectorAll(`${editor} .test-error-content-widget`)].map((widget) => {
     const { top, bottom, right } = widget.getBoundingClientRect();
+    // An ellipsis is drawn where the text is wider than its box; a reader needs the first words of a cause.
+    const boxes = [widget, ...widget.querySelectorAll("*")].filter(({ clientWidth }) => clientWidth > 0);
+    const share = Math.min(1, ...boxes.map(({ clientWidth, scrollWidth }) => clientWidth / scrollWidth));
+    const { length } = plain(widget);
+    const shortened = length * share < Math.min(length, 30);
     const line = [...document.querySelectorAll(`${editor} .view-line`)].find((one) => {
       const place = one.getBoundingClientRect();
       return place.top < (top + bottom) / 2 && (top + bottom) / 2 < place.bottom;
     });
-    return { text: plain(widget), line: line === undefined ? "" : plain(line), cut: right > edge };
+    return { text: plain(widget), line: line === undefined ? "" : plain(line), cut: right > edge || shortened };
   });
 }
