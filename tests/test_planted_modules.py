@@ -34,6 +34,7 @@ COMMANDS = (
     "runs --store out/runs",
     "judge latest pickplace.bddx --store out/runs",
     "replay latest --store out/runs",
+    "compare latest latest --store out/runs",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
     "new out/bench",

@@ -40,7 +40,7 @@ def before_scenario(context: Any, scenario: Any) -> None:
 
 
 def before_step(context: Any, step: Any) -> None:
-    """Report that the judgement of the step's clause begins, whoever defined the step."""
+    """Report that the judgement of a clause begins. The step may be a user's or ours."""
     context.session.step_started(int(step.line))
 
 
