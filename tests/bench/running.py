@@ -127,7 +127,7 @@ def _cancelled() -> float:
     """Return the longest time (s) that runs take to end when interrupted after their first line."""
     longest = 0.0
     for _ in range(INTERRUPTIONS):
-        with _run_of_the_example("--repeat", "100", "--jobs", "2") as process:
+        with _run_of_the_example("--repeat", "100", "--jobs", "2", "--every-clause") as process:
             assert process.stdout is not None
             process.stdout.readline()
             began = time.perf_counter()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.commands.progress import Display
+from robbdd_tools.commands.rate_lines import MANY
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
@@ -31,13 +32,17 @@ class Followed(Protocol):
         ...
 
 
-def follow_run(run: Run) -> int:
-    """Execute a run and show its progress. Return the number of the signal that ended the run, or 0."""
+def follow_run(run: Run, *, every_clause: bool = False) -> int:
+    """Execute a run and show its progress. Return the number of the signal that ended the run, or 0.
+
+    Of more than ``MANY`` scenarios, failures and pass rates are shown, unless ``every_clause`` is true.
+    """
 
     def watching(display: Display) -> None:
         run.listen(display.watch)
 
-    return _follow(run, None, watching)
+    brief = not every_clause and len(run.progress.scenarios) > MANY
+    return _follow(run, Display(run.progress, brief=brief), watching)
 
 
 def follow(work: Followed, total: int | None = None, made: str = "simulated in") -> int:
@@ -45,12 +50,10 @@ def follow(work: Followed, total: int | None = None, made: str = "simulated in")
 
     Raises ``OSError``. Returns the number of the signal that ended it, or 0.
     """
-    return _follow(work, total, None, made)
+    return _follow(work, Display(work.progress, total, made), None)
 
 
-def _follow(
-    work: Followed, total: int | None, watching: Callable[[Display], None] | None, made: str = "simulated in"
-) -> int:
+def _follow(work: Followed, showing: Display, watching: Callable[[Display], None] | None) -> int:
     ended_by = 0
 
     def cancel(number: int) -> None:
@@ -58,7 +61,7 @@ def _follow(
         ended_by = number
         work.cancel(INTERRUPTED)
 
-    with Display(work.progress, total, made) as display:
+    with showing as display:
         if watching is not None:
             watching(display)
         with end_requests(cancel):

@@ -21,6 +21,7 @@ from rich.text import Text
 
 from robbdd_tools.base.printable import printable
 from robbdd_tools.commands.failure_summary import failure_summary
+from robbdd_tools.commands.rate_lines import rate_lines
 from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
@@ -65,11 +66,14 @@ class Display:
 
     If the cursor of the terminal can be moved, a progress bar is shown and lines are wrapped between words. Any other
     output gets plain lines without wrapping, so that other programs can read them. ``made`` says how the time of the
-    executions relates to the time that the work took.
+    executions relates to the time that the work took. If ``brief`` is true, only failures and pass rates are printed.
     """
 
-    def __init__(self, results: RunResults, total: int | None = None, made: str = "simulated in") -> None:
+    def __init__(
+        self, results: RunResults, total: int | None = None, made: str = "simulated in", *, brief: bool = False
+    ) -> None:
         self._results = results
+        self._brief = brief
         self._made = made
         self._total = len(results.scenarios) if total is None else total
         self._console = terminal()
@@ -89,6 +93,7 @@ class Display:
         # A resumed run has some already.
         finished = [scenario for scenario in results.scenarios if scenario.finished is not None]
         self._ended = Counter(scenario.verdict for scenario in finished)
+        self._shown = Counter(self._ended)
         self._worst: dict[int, Outcome] = {}
         self._faults: dict[str, int] = {}
         self._printed: dict[int, list[str]] = {}
@@ -123,6 +128,7 @@ class Display:
                 self._progress.update(self._task, counts=self._counts())
             case ScenarioFinished():
                 self._scenario(message.index)
+                self._tenth()
             case UserCodeFailed(_, fault):
                 self._fault(fault)
             case Output(None, text):
@@ -173,6 +179,8 @@ class Display:
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
         for outcome, words in failure_summary(shown, self._faults) if len(shown) > 1 else ():
             self._console.print(plain(words, STYLES[outcome]))
+        for words in rate_lines(finished) if self._brief else ():
+            self._console.print(Text(words))
         outcomes = [scenario.verdict for scenario in shown]
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]
         executions = _executions(finished)
@@ -196,6 +204,12 @@ class Display:
             *([", ", (f"{errored} errored", STYLES[Outcome.UNKNOWN])] if errored else []),
         )
 
+    def _tenth(self) -> None:
+        """Print a line after each tenth of a brief run, where no bar shows how far the run is."""
+        done = self._shown.total()
+        if self._brief and not self._drawn and done * 10 // self._total > (done - 1) * 10 // self._total:
+            self._console.print(Text(f"{done} of {self._total} scenarios: {self._shown[Outcome.HOLDS]} hold"))
+
     def _vacuous(self) -> Iterator[tuple[str, str]]:
         """Yield the name of each clause whose verdict proves little, and the reason, in the order of the model."""
         clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
@@ -207,6 +221,10 @@ class Display:
         scenario = self._results.scenarios[index]
         spec = scenario.spec
         outcome = scenario.verdict
+        self._shown[outcome] += 1
+        if self._brief and outcome is Outcome.HOLDS:
+            self._printed.pop(index, None)
+            return
         self._console.print(plain(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
         self._output(self._printed.pop(index, []))
         rows = [
@@ -217,6 +235,7 @@ class Display:
             )
             for clause in spec.clauses
             if (known := scenario.judged.get(clause.line)) is not None
+            and not (self._brief and known.verdict == Outcome.HOLDS)
         ]
         width = max((len(sentence) for _, sentence, _ in rows), default=0)
         for number, (judged, sentence, decided) in enumerate(rows):

@@ -46,7 +46,8 @@ def _resume(options: ResumeOptions) -> int:
     path, status = place.record().path, place.status()
     with resumed(place, lambda stored: _policy(options, stored)) as run:
         print_note(f"robbdd: resuming run {place.number or place.folder} of {path}; {status.words()}")
-        return conclude(run, options.outputs, follow_run(run))
+        ended_by = follow_run(run, every_clause=options.outputs.every_clause)
+        return conclude(run, options.outputs, ended_by)
 
 
 def _policy(options: ResumeOptions, status: RunStatus) -> Policy:

@@ -38,12 +38,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """Where to write: a JSON file, a JUnit XML file, a folder of pictures and videos, and the run's own folder."""
+    """Where to write: a JSON file, a JUnit XML file, a folder of pictures and videos, and the run's own folder.
+
+    If ``every_clause`` is true, every clause is printed, however many scenarios there are.
+    """
 
     report: Path | None = None
     junit: Path | None = None
     record: Path | None = None
     keeping: Keeping = field(default_factory=Keeping)
+    every_clause: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +153,7 @@ def _run(options: RunOptions) -> int:
     policy = viewed_policy(options.policy, viewer=options.viewer)
     with Run.begin(plan, place.place, policy, repeat=repeat, on_close=place.remove) as run:
         _announce(run, policy)
-        ended_by = follow_run(run)
+        ended_by = follow_run(run, every_clause=options.outputs.every_clause)
         return conclude(run, options.outputs, ended_by)
 
 

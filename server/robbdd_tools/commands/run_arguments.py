@@ -40,6 +40,8 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     outputs = parser.add_argument_group("outputs")
     outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     outputs.add_argument("--junit", metavar="OUT.xml", type=Path, help="write the results as JUnit XML")
+    text = "print every clause of every scenario; of more than 50 scenarios, failures and pass rates are printed"
+    outputs.add_argument("--every-clause", action="store_true", help=text)
     text = "write a video of each scenario and a picture of each violation to this folder"
     outputs.add_argument("--record", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--viewer", action="store_true", help="follow each scenario in a window, in real time")
@@ -147,7 +149,8 @@ def _outputs(options: argparse.Namespace, *, keep: bool = True) -> Outputs:
     from robbdd_tools.commands.run import Outputs
     from robbdd_tools.workbench.folder import Keeping
 
-    return Outputs(options.json, options.junit, options.record, Keeping(options.output, options.store, keep))
+    keeping = Keeping(options.output, options.store, keep)
+    return Outputs(options.json, options.junit, options.record, keeping, options.every_clause)
 
 
 def policy(options: argparse.Namespace) -> Policy:
