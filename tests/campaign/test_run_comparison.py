@@ -152,6 +152,7 @@ def test_equal_controllers_are_called_different_no_more_often_than_stated(count:
         )
         found = compare_results(before, after, ComparisonOptions(by_margin=True))
         alarms += any(one.change in (Change.WORSE, Change.BETTER) for one in found.effects)
+    print(f"{alarms} false alarms in {count} comparisons")
     # Three standard deviations above the stated 5 %.
     assert alarms / count <= 0.05 + 3 * (0.05 * 0.95 / count) ** 0.5
 

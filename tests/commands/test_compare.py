@@ -58,6 +58,18 @@ def test_a_worse_run_fails_and_names_its_clause_and_executions(
     assert "\n| c5 | 30/30 | 5/30 | −83.3 points \\[" in text
 
 
+def test_only_the_violated_clauses_of_an_execution_are_listed(
+    store: RunStore, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record_run(store, [0.3], clauses=CLAUSES)
+    record_run(store, [-0.1], clauses=CLAUSES)
+    main(["compare", "1", "2"])
+    assert "      c5  ✔ +300 mm → ✗ −100 mm: -0.1\n      c6  ✔ +300 mm → ✗ −100 mm: -0.1\n\n" in capsys.readouterr().out
+    record_run(store, [None], clauses=CLAUSES)
+    main(["compare", "1", "3"])
+    assert "      c5  ✔ +300 mm → ?: None\n      c6  ✔ +300 mm → ?: None\n\n" in capsys.readouterr().out
+
+
 def test_few_executions_do_not_tell_and_say_how_many_would(store: RunStore, capsys: pytest.CaptureFixture[str]) -> None:
     record_run(store, [0.3] * 5)
     record_run(store, [0.2] * 5)

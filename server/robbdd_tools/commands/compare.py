@@ -17,6 +17,8 @@ from robbdd_tools.campaign.run_sources import run_source
 from robbdd_tools.commands import CANNOT_TELL, FINDINGS, OK
 from robbdd_tools.commands.output import print_line
 from robbdd_tools.commands.run import Outputs, report_problems
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.readable import title
 from robbdd_tools.run.report import SIGNS, margin
 from robbdd_tools.workbench.comparison import compare as list_changes
 
@@ -104,8 +106,12 @@ def _flips(changes: Comparison | None) -> Iterator[str]:
 def _flip(change: ExecutionChange) -> Iterator[str]:
     places = dict.fromkeys(f"execution {side.index + 1}" for side in (change.before, change.after) if side is not None)
     yield f"  {change.name}  {change.values}  ({' → '.join(places)})"
-    for clause in change.clauses:
+    # What is unknown now follows from what is violated now.
+    causes = [clause for clause in change.clauses if clause.after is Outcome.VIOLATED] or change.clauses
+    for clause in causes:
         old = f"{SIGNS[clause.before]} {margin(clause.margin_before, clause.unit)}" if clause.before else "—"
         new = f"{SIGNS[clause.after]} {margin(clause.margin_after, clause.unit)}" if clause.after else "—"
         reason = f": {clause.reason}" if clause.reason else ""
-        yield f"      {clause.name}  {old.strip()} → {new.strip()}{reason}"
+        yield f"      {title(clause.name, clause.name)}  {old.strip()} → {new.strip()}{reason}"
+    if len(causes) < len(change.clauses):
+        yield f"      and {len(change.clauses) - len(causes)} more"
