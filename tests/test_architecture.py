@@ -48,7 +48,7 @@ HOMES = {
     "pyshacl": {"graph"},
     "covertable": {"gherkin"},
     "pyld": {"graph"},
-    "jinja2": {"gherkin"},
+    "jinja2": {"gherkin", "campaign"},
     "behave": {"agent"},
     "mujoco": {"world"},
     "mcap": {"traces", "logs"},

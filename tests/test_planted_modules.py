@@ -35,6 +35,7 @@ COMMANDS = (
     "judge latest pickplace.bddx --store out/runs",
     "replay latest --store out/runs",
     "compare latest latest --store out/runs",
+    "report latest -o out/report.html --store out/runs",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
     "new out/bench",

@@ -1,4 +1,4 @@
-"""The arguments of the commands about stored runs: ``runs``, ``replay``, ``judge``, ``compare``, ``export``."""
+"""The arguments of the commands about stored runs: runs, replay, judge, compare, report and export."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ def add_commands_of_runs(commands: AddsCommands) -> tuple[argparse.ArgumentParse
     """Add the commands, and return those that may execute users' code."""
     _add_runs(commands)
     _add_compare(commands)
+    _add_report(commands)
     return _add_replay(commands), _add_judge(commands), _add_export(commands)
 
 
@@ -75,6 +76,15 @@ def _add_compare(commands: AddsCommands) -> None:
     compare.add_argument("--markdown", metavar="OUT", type=Path, help=text)
     allow_store(compare)
     compare.set_defaults(command=_compare)
+
+
+def _add_report(commands: AddsCommands) -> None:
+    report = commands.add_parser("report", help="write the report of a stored run as one HTML page")
+    report.add_argument("run", metavar="RUN", help=RUN)
+    report.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the run's project")
+    report.add_argument("-o", "--output", metavar="FILE.html", type=Path, required=True)
+    allow_store(report)
+    report.set_defaults(command=_report)
 
 
 def _add_export(commands: AddsCommands) -> argparse.ArgumentParser:
@@ -136,6 +146,12 @@ def _compare(options: argparse.Namespace) -> int:
             options.markdown,
         )
     )
+
+
+def _report(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.write_report import write_report
+
+    return write_report(options.run, options.path, options.output, options.store)
 
 
 def _export(options: argparse.Namespace) -> int:

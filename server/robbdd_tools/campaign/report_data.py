@@ -1,0 +1,191 @@
+"""Plain data of a run's report: counts, clauses, factors and the executions that do not hold."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import TYPE_CHECKING
+
+from robbdd_tools.campaign.rates import Interval, rate_interval
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.json_documents import NoTrace, stored_curves
+from robbdd_tools.run.plot import plot
+from robbdd_tools.run.readable import title
+from robbdd_tools.run.report import margin, plain_sentence, value_words
+
+if TYPE_CHECKING:
+    from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
+    from robbdd_tools.workbench.stored import PastRun
+
+MOST_SHOWN = 20
+"""So many executions that do not hold are shown in full."""
+_BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Executions by verdict, and the interval of the pass rate; an unknown execution does not pass."""
+
+    holds: int
+    violated: int
+    unknown: int
+    interval: Interval
+
+    @property
+    def total(self) -> int:
+        """The number of executions."""
+        return self.holds + self.violated + self.unknown
+
+    @property
+    def words(self) -> str:
+        """The pass rate in percent with its interval."""
+        if not self.total:
+            return "no executions"
+        low, high = 100 * self.interval.low, 100 * self.interval.high
+        return f"{100 * self.holds / self.total:.1f} % [{low:.1f} %, {high:.1f} %]"
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseRow:
+    """A clause over all executions. ``least`` and ``middle`` are the smallest and the median margin in words."""
+
+    name: str
+    role: str
+    sentence: str
+    counts: Counts
+    least: str
+    middle: str
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRow:
+    """A clause of one execution: its verdict, margin and reason in words, and the plot of its margin as SVG."""
+
+    name: str
+    sentence: str
+    verdict: Outcome
+    margin: str
+    reason: str
+    plot: str
+
+
+@dataclass(frozen=True, slots=True)
+class FailedRow:
+    """An execution that does not hold. ``command`` simulates it again."""
+
+    name: str
+    values: str
+    verdict: Outcome
+    seed: int
+    command: str
+    clauses: tuple[JudgedRow, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """A variable, or the variant, with its levels in words; ``of`` is the level of each execution."""
+
+    name: str
+    levels: tuple[str, ...]
+    of: tuple[int, ...]
+
+
+def counts(verdicts: Iterable[Outcome]) -> Counts:
+    """Count verdicts. Raises ``StatisticsNotInstalled``."""
+    found = Counter(verdicts)
+    total = found.total()
+    return Counts(
+        found[Outcome.HOLDS],
+        found[Outcome.VIOLATED],
+        found[Outcome.UNKNOWN],
+        rate_interval(found[Outcome.HOLDS], total),
+    )
+
+
+def clause_rows(results: Sequence[ExecutionResult]) -> list[ClauseRow]:
+    """Return the clauses of a run in the order of judgement."""
+    judged: dict[str, list[tuple[ExecutionResult, ClauseResult]]] = {}
+    for result in results:
+        for clause in result.clauses:
+            judged.setdefault(clause.iri, []).append((result, clause))
+    return [_clause_row(pairs) for pairs in judged.values()]
+
+
+def factors(results: Sequence[ExecutionResult]) -> list[Factor]:
+    """Return the factors with several levels, in the order of the executions."""
+    names = ["variant", *dict.fromkeys(name for result in results for name in result.values)]
+    found = (_factor(name, results) for name in names)
+    return [factor for factor in found if len(factor.levels) > 1]
+
+
+def failed_rows(run: PastRun, results: Sequence[ExecutionResult]) -> list[FailedRow]:
+    """Return the executions that do not hold, the worst first: violated before unknown, then by their margins."""
+    failed = sorted((one for one in results if one.verdict is not Outcome.HOLDS), key=_rank)
+    return [_failed_row(run, one) for one in failed[:MOST_SHOWN]]
+
+
+def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> ClauseRow:
+    first = pairs[0][1]
+    margins = [clause.margin for _, clause in pairs if clause.margin is not None]
+    least, middle = (margin(value(margins), first.unit) if margins else "" for value in (min, median))
+    found = counts(clause.verdict for _, clause in pairs)
+    sentences = dict.fromkeys(plain_sentence(clause.sentence) for _, clause in pairs)
+    sentence = next(iter(sentences)) if len(sentences) == 1 else _with_variables(next(iter(sentences)), pairs[0][0])
+    return ClauseRow(title(first.name, first.sentence), first.role, sentence, found, least, middle)
+
+
+def _with_variables(sentence: str, result: ExecutionResult) -> str:
+    """Replace the values of an execution by their variables."""
+    for name, value in result.values.items():
+        variable, _, words = value_words(name, value).partition(" = ")
+        sentence = re.sub(rf"(?<![\w<-]){re.escape(words)}(?![\w>-])", f"<{variable}>", sentence)
+    return sentence
+
+
+def _factor(name: str, results: Sequence[ExecutionResult]) -> Factor:
+    words = [_level(name, result) for result in results]
+    levels = {level: number for number, level in enumerate(dict.fromkeys(words))}
+    shown = value_words(name, "").removesuffix(" = ")
+    return Factor(shown, tuple(levels), tuple(levels[level] for level in words))
+
+
+def _level(name: str, result: ExecutionResult) -> str:
+    if name == "variant":
+        return result.name.rpartition(" -- ")[0]
+    return value_words(name, result.values.get(name, "")).partition(" = ")[2] if name in result.values else "—"
+
+
+def _rank(result: ExecutionResult) -> tuple[int, float, int]:
+    margins = [clause.margin for clause in result.clauses if clause.margin is not None]
+    return _BADNESS.index(result.verdict), min(margins, default=0.0), result.index
+
+
+def _failed_row(run: PastRun, result: ExecutionResult) -> FailedRow:
+    try:
+        curves: Mapping[str, object] = stored_curves(run.place, result.index)
+    except NoTrace:
+        curves = {}
+    lines = [clause.line for clause in run.place.manifest().scenarios[result.index].clauses]
+    clauses = tuple(_judged_rows(result, lines, curves))
+    values = ", ".join(value_words(name, value) for name, value in result.values.items())
+    command = shlex.join(["robbdd", "replay", str(run.number or run.folder), "--scenario", result.name])
+    return FailedRow(result.name, values, result.verdict, result.seed, command, clauses)
+
+
+def _judged_rows(result: ExecutionResult, lines: Sequence[int], curves: Mapping[str, object]) -> Iterator[JudgedRow]:
+    for clause, line in zip(result.clauses, lines, strict=False):
+        drawn = ""
+        if curves and clause.verdict is Outcome.VIOLATED:
+            drawn = plot(curves, line, clause.operand) or ""
+        yield JudgedRow(
+            title(clause.name, clause.sentence),
+            plain_sentence(clause.sentence),
+            clause.verdict,
+            margin(clause.margin, clause.unit),
+            clause.reason,
+            drawn,
+        )
