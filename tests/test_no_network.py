@@ -59,6 +59,8 @@ COMMANDS = (
     "run pickplace.bdd --first 1 --store runs",
     "judge latest pickplace.bdd --store runs",
     "replay latest --store runs --force",
+    "compare latest latest --store runs",
+    "report latest -o report.html --store runs",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",

@@ -83,7 +83,7 @@ def main(folder: Path) -> None:
             results = RunResults(MANIFEST)
             recording.begin(RECORD, policy)
             place.write_record(RECORD)
-        follow_run(Run(place, policy, recording, results, pending(results, stops=False)))
+        follow_run(Run(place, policy, recording, results, pending(results, stops=False)), every_clause=True)
 
 
 if __name__ == "__main__":
