@@ -95,15 +95,14 @@ def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
 
 def _uses(site: Site) -> Iterator[_Use]:
     for clauses in clauses_of(site.placed.declaration):
-        lenient = set(_lenient(clauses.node))
         for phrase in clauses.phrases if site.whole(clauses.node) else ():
-            if phrase in lenient:
-                continue
             slots = dict(phrase.arguments)
             place, thing = slots.get("workspace"), slots.get("object")
             if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
                 variable = site.target(place)
-                if variable is not None and variable.kind is SymbolKind.SET_VARIABLE:
+                is_set = variable is not None and variable.kind is SymbolKind.SET_VARIABLE
+                # Clauses are walked only where it matters: this runs for every story after each keystroke.
+                if variable is not None and is_set and phrase not in set(_lenient(clauses.node)):
                     yield _Use(site, thing.path, place, variable_key(variable))
 
 
