@@ -34,7 +34,8 @@ PART = "correct"
 
 def no_correct_place(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such object once for each variant, at its first occurrence among the values."""
-    if not any(PART in one.document.text for one in snapshot.closure(file.document.uri)):
+    scope = snapshot.scope(file.document.uri)
+    if scope.is_small and not any(PART in one.document.text for one in scope.files):
         return  # Stories are only visited if something asks, since they can be many.
     placed: frozenset[Key] | None = None
     for site in story_sites(snapshot, file):
