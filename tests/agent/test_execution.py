@@ -241,7 +241,8 @@ def test_a_simulation_that_breaks_down_ends_with_a_remark() -> None:
     run.simulation.data.qvel[run.simulation.model.body(CUBE).dofadr[0]] = np.nan
     trace = to_the_end(run)
     assert trace.finished
-    assert trace.remark.startswith("the simulation became unstable at ")
+    cause = f"the free joint of '{CUBE}' moves without bounds"
+    assert trace.remark.startswith(f"the simulation became unstable: {cause}, at ")
 
 
 def test_an_execution_ends_when_its_simulated_time_is_up_and_says_so() -> None:

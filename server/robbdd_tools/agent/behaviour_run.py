@@ -272,7 +272,8 @@ class BehaviourRun:
             if self._calls and self._calls[0].behaviour == "place":
                 self._hand_over(self._calls[0])
         except SimulationError as error:
-            raise SceneError(f"the scene does not come to rest: {error}") from error
+            origin = self.simulation.world.cast.cause(error)
+            raise SceneError(f"the scene does not come to rest: {error}", origin=origin) from error
 
     def _refuse_nowhere(self, call: Call) -> None:
         """Raise ``SceneError`` if no object carries a place of a behaviour.

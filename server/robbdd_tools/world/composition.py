@@ -18,11 +18,12 @@ from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, rank_by_friction
+from robbdd_tools.world.owners import scenery_name
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
-from robbdd_tools.world.staging import Staging, scenery_name, shape_name
+from robbdd_tools.world.staging import Staging, shape_name
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
@@ -142,7 +143,6 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     try:
         with warnings.catch_warnings():
-            # Keep the world's options; ignore those in a robot's file.
             warnings.simplefilter("ignore")
             return spec.compile()
     except ValueError as error:
@@ -196,7 +196,7 @@ def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
         if geom.contype or geom.conaffinity:
             geom.contype = THINGS
             geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
-    spec.attach(child, prefix=prefix, frame=spec.worldbody.add_frame())
+    _attach(spec, child, prefix, spec.worldbody.add_frame())
 
 
 def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, count: int) -> None:
@@ -215,7 +215,7 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
             servo.ctrllimited = False
     turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
-    spec.attach(child, prefix=f"{name}/", frame=frame)
+    _attach(spec, child, f"{name}/", frame)
     half = (base.position[2] - FLOOR) / 2
     x, y, z = base.position
     foot = spec.worldbody.add_body(name=f"{name}/{COLUMN}", pos=[x, y, z - half])
@@ -224,6 +224,13 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     column.rgba = [0.45, 0.47, 0.50, 1.0]
     for one, other in (*apart, *((COLUMN, body) for body in beside_base)):
         spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
+
+
+def _attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:
+    """Add a model. The world keeps its own options and sizes where those of the model's file differ."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Attach conflict")
+        spec.attach(child, prefix=prefix, frame=frame)
 
 
 @cache

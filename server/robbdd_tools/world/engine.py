@@ -20,11 +20,13 @@ def version() -> str:
     return f"MuJoCo {mujoco.__version__}"
 
 
-def _ignore(_warning: object) -> None:
-    """Ignore a warning of the engine, which it would otherwise write to a file in the working folder.
-
-    The simulation itself detects the condition that the engine warns about (NaN in the state).
-    """
+WARNINGS: list[str] = []
+"""Warnings of the engine since the list was cleared (``engine_faults``)."""
 
 
-mujoco.set_mju_user_warning(_ignore)
+def _keep(warning: object) -> None:
+    """Keep a warning of the engine, which it would otherwise write to MUJOCO_LOG.TXT in the working folder."""
+    WARNINGS.append(str(warning))
+
+
+mujoco.set_mju_user_warning(_keep)

@@ -44,4 +44,11 @@ class UserError(_WithFault):
 
 
 class SimulationError(Exception):
-    """The simulation became numerically unstable."""
+    """The simulation became numerically unstable, or the engine cannot compute it.
+
+    ``element`` is the element of the scene that causes it; empty if unknown.
+    """
+
+    def __init__(self, message: str, element: str = "") -> None:
+        super().__init__(message)
+        self.element = element

@@ -9,6 +9,8 @@ import numpy as np
 
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.engine_faults import strict
+from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
 
@@ -142,14 +144,12 @@ class GripperReader:
         behind = {str(joint.name) for joint in self._parts.joints}
         fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
         places, speeds = model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
-        start = data.qpos[places].copy()
         data.ctrl[model.actuator(actuator.name).id] = control
-        step = 0
-        for step in range(SETTLING):
-            mujoco.mj_step(model, data)
-            data.qpos[places], data.qvel[speeds] = start, 0.0
-            if step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
-                break
+        try:
+            with strict(model, data):
+                step = _move_alone(model, data, places, speeds)
+        except SimulationError as error:
+            raise self._parts.error(f"cannot be simulated: {error}") from error
         self._settling = max(self._settling, step * float(model.opt.timestep))
         if not np.all(np.isfinite(data.qpos)):
             raise self._parts.error("is unstable: its actuator moves it to infinity")
@@ -239,3 +239,15 @@ class GripperReader:
             turn.T @ axes[:, 0],
             turn.T @ axis,
         )
+
+
+def _move_alone(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> int:
+    """Step until the gripper is at rest; the other joints, given by their addresses, stay. Returns the last step."""
+    start = data.qpos[places].copy()
+    step = 0
+    for step in range(SETTLING):
+        mujoco.mj_step(model, data)
+        data.qpos[places], data.qvel[speeds] = start, 0.0
+        if step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
+            break
+    return step

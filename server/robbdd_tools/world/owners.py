@@ -1,9 +1,21 @@
-"""The owner, an element of the scene, of each geom of a compiled world."""
+"""Owners, elements of the scene, of what a compiled world consists of."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Any
+
+SCENERY = "scenery"
+
+
+def scenery_name(number: int) -> str:
+    """Return the scenery's name for a model of the whole scene: the prefix of its bodies and geoms."""
+    return f"{SCENERY}{number}"
+
+
+def is_scenery(name: str) -> bool:
+    """Return whether a name is that of a model of the whole scene; elements have a namespace."""
+    return name.startswith(SCENERY) and name[len(SCENERY) :].isdecimal()
 
 
 def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:

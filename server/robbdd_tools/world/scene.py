@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
 from robbdd_tools.world.scene_configuration import Configured, configure, height_of
 
@@ -63,6 +63,10 @@ class Cast:
     def origin(self, name: str) -> Origin | None:
         """Return the source position at which an executable scene defines an element, or ``None``."""
         return None if self.staging is None else self.staging.origin(name)
+
+    def cause(self, error: SimulationError) -> Origin | None:
+        """Return the source position of the element that makes the simulation fail, or ``None``."""
+        return self.origin(error.element) if error.element else None
 
     @property
     def tables(self) -> tuple[str, ...]:

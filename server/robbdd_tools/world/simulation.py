@@ -13,8 +13,9 @@ import numpy as np
 
 from robbdd_tools.world.belts import Belts
 from robbdd_tools.world.contact_forces import ContactForces
-from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
-from robbdd_tools.world.errors import SimulationError
+from robbdd_tools.world.engine import SUBSTEPS, TICK, WARNINGS, mujoco
+from robbdd_tools.world.engine_faults import strict
+from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.holding import Grips
 from robbdd_tools.world.recorder import Bodies, Recorder
@@ -42,6 +43,7 @@ class Simulation:
     """
 
     def __init__(self, world: World) -> None:
+        """Raises ``SceneError`` if the engine cannot compute the initial state."""
         self.world = world
         self.model: Any = world.model
         self.data: Any = mujoco.MjData(world.model)
@@ -124,7 +126,7 @@ class Simulation:
     def tick(self) -> None:
         """Advance by one control tick with the current controls and record a sample.
 
-        Raises ``SimulationError`` if the state contains NaN.
+        Raises ``SimulationError`` if the state contains NaN or the engine warns.
         """
         self._step()
         self.ticks += 1
@@ -186,17 +188,27 @@ class Simulation:
 
     def _step(self) -> None:
         began = perf_counter()
-        for _ in range(SUBSTEPS):
-            mujoco.mj_step(self.model, self.data)
-            self.forces.measure(self.data)
-            if self.touches is not None:
-                self.touches.measure(self.data)
+        try:
+            with strict(self.model, self.data):
+                self._substeps()
+        except SimulationError as error:
+            raise SimulationError(f"{error}, at {self.time:.2f} s", error.element) from error
         self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
         # A target that is not moved stays in place.
         self._ctrl[self._servos] = 0.0
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
+
+    def _substeps(self) -> None:
+        for _ in range(SUBSTEPS):
+            mujoco.mj_step(self.model, self.data)
+            self.forces.measure(self.data)
+            if self.touches is not None:
+                self.touches.measure(self.data)
+            if WARNINGS:
+                # The first warning names the cause; all others follow from it.
+                return
 
     def _held_by(self, agent: str) -> list[str]:
         held = self._grips.held[agent]
@@ -209,4 +221,8 @@ class Simulation:
             self.open_fingers(robot, self.data)
             self.data.act[robot.targets] = home
             self.command(robot, home, robot.model.gripper_open)
-        mujoco.mj_forward(self.model, self.data)
+        try:
+            with strict(self.model, self.data):
+                mujoco.mj_forward(self.model, self.data)
+        except SimulationError as error:
+            raise SceneError(str(error), origin=self.world.cast.cause(error)) from error

@@ -13,6 +13,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.frames import Frames
 from robbdd_tools.world.model_files import FromFile, load, object_from, usable
+from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import robot_from
 
@@ -39,11 +40,6 @@ class DeclaredPair:
         values = ((name, getattr(pair, name)) for name in PAIR)
         kept = {name: value if isinstance(value, int | float) else list(value) for name, value in values}
         return DeclaredPair(number, (str(pair.geomname1), str(pair.geomname2)), kept)
-
-
-def scenery_name(number: int) -> str:
-    """Return the scenery's name for a model of the whole scene: the prefix of its bodies and geoms."""
-    return f"scenery{number}"
 
 
 def shape_name(owner: str, shape: str | int) -> str:
@@ -131,7 +127,12 @@ class Staging:
         return pose
 
     def origin(self, element: str) -> Origin | None:
-        """Return the source position at which the scene defines an element; ``None`` if it does not define it."""
+        """Return the source position at which the scene defines an element or a model of the whole scene.
+
+        It is ``None`` for anything else.
+        """
+        if is_scenery(element):
+            return self._worlds[int(element[len(SCENERY) :])][0].origin
         said = self._elements.get(element)
         return None if said is None else said.origin
 
