@@ -1,5 +1,6 @@
 """Settings of all tests."""
 
+import gc
 import os
 from collections.abc import Iterator
 
@@ -7,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, settings
 
 from fork_kit import CAN_FORK, INTERPRETERS, fork_server
+from robbdd_tools.base.memory import collect_rarely
 
 # Tests share the cores with one another: how long an example takes says nothing about the code. In continuous
 # integration the examples are the same in every run; elsewhere new ones are tried.
@@ -28,6 +30,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if long:
         config.hook.pytest_deselected(items=long)
         items[:] = [item for item in items if item.get_closest_marker("nightly") is None]
+
+
+def pytest_collection_finish() -> None:
+    """Search for reference cycles as rarely as the product does, and never among what the collection of tests made."""
+    gc.collect()
+    gc.freeze()
+    collect_rarely()
 
 
 @pytest.fixture(scope="session")
