@@ -54,6 +54,21 @@ export class Session {
     }
   }
 
+  /**
+   * Begin anew in the same window: no editor is open, and the workspace is as it was at first.
+   *
+   * @param {string} workspace folder of which it is a copy
+   * @param {(workspace: string) => Promise<void>} [prepare] changes the copy
+   */
+  async renew(workspace, prepare = async () => {}) {
+    await this.workbench.tidy();
+    for (const name of await readdir(this.workspace)) {
+      await rm(join(this.workspace, name), { recursive: true, maxRetries: 5 });
+    }
+    await cp(workspace, this.workspace, { recursive: true });
+    await prepare(this.workspace);
+  }
+
   async #open(workspace, prepare, graphics, options) {
     this.#folder = await mkdtemp(join(tmpdir(), "robbdd-workbench-"));
     this.workspace = join(this.#folder, "workspace");

@@ -4,32 +4,60 @@ import { after, before, test } from "node:test";
 import { EXAMPLES, LANGUAGE_SERVER, required } from "./checkout.mjs";
 import { Session } from "./session.mjs";
 
+/** What several stories share: one window on the examples, since to load one takes longer than most of what is tested in it. */
+export class SharedWindow {
+  /** @type {Session | undefined} */
+  #session;
+
+  /** Open the window, or begin anew in it. */
+  async open(options) {
+    if (this.#session === undefined) {
+      this.#session = await Session.open(options);
+    } else {
+      await this.#session.renew(options.workspace, options.prepare);
+    }
+    return this.#session;
+  }
+
+  /** Leave the window to the next story, or close it after a failure. */
+  async leave(failure) {
+    if (failure !== undefined) {
+      await this.close(failure);
+    }
+  }
+
+  async close(failure) {
+    const session = this.#session;
+    this.#session = undefined;
+    await session?.close(failure);
+  }
+}
+
 /**
  * Open a session before the first step and close it after the last, with a picture where one failed.
  *
  * @param {string} name of that picture
  * @param {(session: Session) => void} opened takes the session before the first step
- * @param {Partial<Parameters<typeof Session.open>[0]>} [options] of the session
+ * @param {Partial<Parameters<typeof Session.open>[0]> & { window?: SharedWindow }} [options] of the session, and the window in
+ *   which it is to be
  * @returns {(title: string, body: (context: import("node:test").TestContext) => Promise<void>) => void} what adds a step:
  *   a later one stands on the earlier ones
  */
-export function story(name, opened, { settings = {}, ...options } = {}) {
+export function story(name, opened, { window, settings = {}, ...options } = {}) {
   /** @type {Session} */
   let session;
   let failed;
 
   before(async () => {
     const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-    session = await Session.open({
-      workspace: EXAMPLES,
-      ...options,
-      settings: { "robbdd.server.path": server, ...settings },
-    });
+    const wanted = { workspace: EXAMPLES, ...options, settings: { "robbdd.server.path": server, ...settings } };
+    session = await (window?.open(wanted) ?? Session.open(wanted));
     opened(session);
   });
 
   after(async () => {
-    await session?.close(failed === undefined ? undefined : `${name}-failed`);
+    const failure = failed === undefined ? undefined : `${name}-failed`;
+    await (window?.leave(failure) ?? session?.close(failure));
   });
 
   return function step(title, body) {

@@ -156,6 +156,22 @@ export class Workbench {
     await this.page.locator(".part.panel").waitFor({ state: "hidden" });
   }
 
+  /** Close every editor without saving it, the panel and what the mouse shows; show the files. */
+  async tidy() {
+    await this.page.mouse.move(5, 5);
+    const tabs = this.page.locator(".editor-group-container .tab");
+    for (let open = await tabs.count(); open > 0; open = await tabs.count()) {
+      await this.command("View: Revert and Close Editor");
+      await eventually(async () => assert.ok((await tabs.count()) < open, "no editor was closed"));
+    }
+    if (await this.page.locator(".part.panel").isVisible()) {
+      await this.closePanel();
+    }
+    await this.command("View: Show Explorer");
+    await this.#restored();
+    await this.changeScheme("light");
+  }
+
   /** A code lens of the active editor by its text. */
   codeLens(text) {
     return this.page.locator(`${EDITOR} .codelens-decoration a`, { hasText: text });
