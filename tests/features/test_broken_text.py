@@ -46,6 +46,8 @@ class Model:
     """One of the files, in which texts are replaced while the others stay unchanged."""
 
     name: str
+    step: int
+    """Only each so many-th word is left out."""
 
     @property
     def uri(self) -> str:
@@ -72,8 +74,9 @@ class Model:
 
     @cached_property
     def cuts(self) -> list[tuple[Place, Place]]:
-        """Each word and sign of a declaration, to be left out."""
-        return [(block, found.span()) for block in self.blocks for found in WORDS.finditer(self.text, *block)]
+        """The words and signs of declarations that are left out."""
+        found = [(block, word.span()) for block in self.blocks for word in WORDS.finditer(self.text, *block)]
+        return found[:: self.step]
 
     @cached_property
     def sound(self) -> Targets:
@@ -113,8 +116,11 @@ class Model:
         return found
 
 
-MODELS = [Model(name) for name in FILES]
-EACH = pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+SHORT = 1_000
+"""Of shorter texts, each word is left out."""
+SAMPLES = [pytest.param(Model(name, 1 if len(text) < SHORT else 3), id=name) for name, text in FILES.items()]
+WHOLE = [pytest.param(Model(name, 1), id=f"{name}-whole", marks=pytest.mark.nightly) for name in FILES]
+EACH = pytest.mark.parametrize("model", [*SAMPLES, *WHOLE])
 
 
 def names(found: list[Item]) -> list[tuple[str, str]]:

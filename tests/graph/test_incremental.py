@@ -21,7 +21,7 @@ from robbdd_tools.graph.shapes.validate import validate
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
 
-SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "20"))
+SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "10"))
 SCENARIO = re.compile(r"^ +Scenario [^{]*\{.*?^ {8}\}\n", re.MULTILINE | re.DOTALL)
 DECLARATION = re.compile(r"^(?=\S)(?![})|])", re.MULTILINE)
 MAIN, LAB = f"{FOLDER}main.bdd", f"{FOLDER}lab.scene"
