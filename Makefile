@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench docs package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -64,6 +64,13 @@ mutants: $(READY)
 # Measures speed as ratios of one run and writes the figures into docs/performance.md.
 bench: $(READY)
 	$(BIN)/python -m tests.bench
+
+# The documentation as a site that needs no network, build/site/index.html, and the manual page build/man/robbdd.1.
+docs: $(READY)
+	rm -rf build/pages build/site build/man
+	$(BIN)/python docs/site/pages.py build/pages
+	$(BIN)/sphinx-build -q -W --keep-going -c docs/site build/pages build/site
+	$(BIN)/sphinx-build -q -b man -c docs/site build/pages build/man
 
 # What a release consists of: wheel, source distribution and VSIX, in dist/. Dated by the commit, so that anyone can make the
 # same bytes from it.

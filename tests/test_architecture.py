@@ -59,6 +59,7 @@ HOMES = {
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
     "rich": {"commands"},
+    "shtab": {"commands"},
     "scipy": {"campaign"},
     "pytest": {"pytest_plugin"},
 }

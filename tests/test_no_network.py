@@ -46,6 +46,7 @@ SCENE = """<?xml version="1.0"?>
 <asset><mesh name="m" file="ADDRESS/mesh.obj"/></asset>&remote;</mujoco>
 """
 COMMANDS = (
+    "completion bash",
     "check .",
     "check graph.ttl foreign.jsonld",
     "graph pickplace.bdd",

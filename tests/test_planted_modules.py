@@ -23,6 +23,7 @@ from robbdd_tools.base.isolation import EXPOSED
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 COMMANDS = (
+    "completion bash",
     "check .",
     "format --check .",
     "gherkin pickplace.bdd -o out/features",

@@ -33,6 +33,7 @@ from robbdd_tools.commands.run_arguments import (
 )
 
 MORE = "further parts of a model that is a graph (.ttl, .json, .jsonld)"
+SHELLS = ("bash", "zsh", "tcsh")
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
 
@@ -54,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(encoding="utf-8", errors="replace")
-    options = _parser().parse_args(arguments)
+    options = argument_parser().parse_args(arguments)
     collect_rarely()
     if getattr(options, "no_user_code", False):
         os.environ[NO_USER_CODE] = "1"
@@ -77,7 +78,8 @@ class _Parser(argparse.ArgumentParser):
         super().error(printable(message))
 
 
-def _parser() -> argparse.ArgumentParser:
+def argument_parser() -> argparse.ArgumentParser:
+    """Return the parser of the arguments of all commands."""
     parser = _Parser("robbdd", description="Acceptance tests of robots, from models to verdicts.")
     parser.add_argument("--version", action="version", version=f"robbdd {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -167,6 +169,9 @@ def _parser() -> argparse.ArgumentParser:
     text = "wait for one editor on this port of 127.0.0.1 instead of standard input and output"
     dap.add_argument("--port", metavar="PORT", type=port, help=text)
     dap.set_defaults(command=_dap)
+    completion = commands.add_parser("completion", help="print a script that completes robbdd's arguments in a shell")
+    completion.add_argument("shell", choices=SHELLS)
+    completion.set_defaults(command=_completion)
     _allow_refusal(run, *stored, view, dap)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
@@ -261,6 +266,12 @@ def _dap(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.dap import serve_debugger
 
     return serve_debugger(options.port)
+
+
+def _completion(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.completion import print_completion
+
+    return print_completion(argument_parser(), options.shell)
 
 
 def _import(options: argparse.Namespace) -> int:

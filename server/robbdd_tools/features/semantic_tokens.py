@@ -215,7 +215,7 @@ def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
 def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
     concepts = dict(_concepts(declaration))
     used = {reference.ref.span for reference in declaration.references}
-    keywords = _keywords(language)
+    keywords = words_of_grammar(language)
     found: list[Token] = []
     end = 0
     for match in _WORDS.finditer(declaration.text):
@@ -286,7 +286,8 @@ def _words_in(text: str, node: tree.Node, concept: str) -> Iterator[tuple[int, T
 
 
 @cache
-def _keywords(language: str) -> frozenset[str]:
+def words_of_grammar(language: str) -> frozenset[str]:
+    """Return the words of a language's grammar."""
     return frozenset(re.findall(r"'([^\W\d][^']*)'", grammar_text(language)))
 
 

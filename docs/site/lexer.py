@@ -1,0 +1,31 @@
+"""Colours of RobBDD text on the site. The keywords are those of the grammars."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from pygments.lexer import RegexLexer, words
+from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text
+
+from robbdd_tools.features.semantic_tokens import words_of_grammar
+from robbdd_tools.syntax.parse import LANGUAGES
+
+KEYWORDS = sorted({word for language in LANGUAGES for word in words_of_grammar(language)}, key=len, reverse=True)
+
+
+class RobbddLexer(RegexLexer):
+    """Words, names, texts, numbers and comments of all file kinds."""
+
+    name = "RobBDD"
+    aliases: ClassVar[Sequence[str]] = ["robbdd"]
+    tokens: ClassVar[dict[str, list[tuple[object, object]]]] = {
+        "root": [
+            (r"//[^\n]*", Comment.Single),
+            (r"\"[^\"\n]*\"|'[^'\n]*'", String),
+            (r"<[\w.\-]+>", Name.Variable),
+            (words(KEYWORDS, prefix=r"(?<![\w-])", suffix=r"(?![\w-])"), Keyword),
+            (r"-?\d[\d.]*", Number),
+            (r"[\w.\-]+", Name),
+            (r"[^\w\s]", Punctuation),
+            (r"\s+", Text),
+        ]
+    }

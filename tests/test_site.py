@@ -1,0 +1,61 @@
+"""The documentation site: every page is in it, every link stays in it, and nothing is loaded from a network."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import unquote, urldefrag
+
+import pytest
+
+from kit import DOCS, ROOT
+
+LOADED = re.compile(r"<(?:script|img|link)\b[^>]*?\b(?:src|href)=\"(https?:[^\"]+)\"")
+LINKED = re.compile(r"<a\b[^>]*?\bhref=\"([^\":]*)\"")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the site as ``make docs`` does."""
+    pages, site = tmp_path_factory.mktemp("docs") / "pages", tmp_path_factory.mktemp("site")
+    subprocess.run([sys.executable, DOCS / "site" / "pages.py", pages], check=True)
+    build = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-c", DOCS / "site", pages, site]
+    done = subprocess.run(build, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return site
+
+
+def test_each_page_is_in_the_site_and_in_the_search(site: Path) -> None:
+    pages = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
+    index = (site / "searchindex.js").read_text(encoding="utf-8")
+    missing = [page for page in pages if not (site / f"{page}.html").exists() or f'"{page}"' not in index]
+    assert missing == []
+
+
+def test_each_link_leads_to_a_page_of_the_site_and_nothing_is_loaded_from_elsewhere(site: Path) -> None:
+    pages = {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
+    assert len(pages) > 100
+    for path, text in pages.items():
+        assert LOADED.findall(text) == [], path.name
+        for link in LINKED.findall(text):
+            target, anchor = urldefrag(unquote(link))
+            found = (path.parent / target).resolve() if target else path
+            assert found.is_file(), (path.name, link)
+            assert not anchor or found not in pages or f'id="{anchor}"' in pages[found], (path.name, link)
+
+
+def test_the_page_of_the_command_line_is_that_of_the_program() -> None:
+    program = [sys.executable, "-c", "import command_line; print(command_line.page(), end='')"]
+    printed = subprocess.run(program, cwd=DOCS / "site", capture_output=True, text=True, check=True).stdout
+    page = (DOCS / "command-line.md").read_text(encoding="utf-8")
+    assert page == printed, "run .venv/bin/python docs/site/command_line.py"
+
+
+def test_each_page_has_its_place_in_the_table_of_contents() -> None:
+    source = (DOCS / "site" / "pages.py").read_text(encoding="utf-8")
+    pages = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
+    named = {page for page in pages if not page.startswith("diagnostics/")}
+    assert [page for page in sorted(named) if f'"{page}"' not in source] == []
+    assert (ROOT / "Makefile").read_text(encoding="utf-8").count("docs/site/pages.py") == 1

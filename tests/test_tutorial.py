@@ -1,0 +1,82 @@
+"""The tutorial is executed as it is written: its files, its edits and its commands, with the output that it shows."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pytest
+
+from fork_kit import ROBBDD
+from kit import DOCS
+
+PAGE = DOCS / "tutorial.md"
+BLOCK = re.compile(r"(?:^`(?P<file>[\w/.]+)`:\n\n)?^```(?P<kind>robbdd|diff|console)\n(?P<text>.*?)^```$", re.M | re.S)
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
+WALL_TIME = re.compile(r"simulated in [\d.]+ s")
+TOLERANCE = 0.05
+"""Numbers may differ by this part, since processors round differently."""
+
+
+def edited(text: str, change: str) -> str:
+    """Return a text after a change in the format of ``diff``, without line numbers."""
+    lines = change.splitlines(keepends=True)
+    old = "".join(line[1:] for line in lines if line[0] in " -")
+    assert text.count(old) == 1, change
+    return text.replace(old, "".join(line[1:] for line in lines if line[0] in " +"))
+
+
+def commands(text: str) -> Iterator[tuple[list[str], list[str]]]:
+    """Yield each command of a console with the lines that it should print."""
+    for part in re.split(r"^\$ ", text, flags=re.M)[1:]:
+        command, *shown = part.splitlines()
+        yield shlex.split(command), shown
+
+
+def matches(shown: Sequence[str], printed: Sequence[str]) -> bool:
+    """Return whether the lines that are shown are those printed; ``…`` stands for any lines."""
+    if not shown:
+        return not printed
+    if shown[0] == "…":
+        return any(matches(shown[1:], printed[start:]) for start in range(len(printed) + 1))
+    return bool(printed) and same(shown[0], printed[0]) and matches(shown[1:], printed[1:])
+
+
+def same(shown: str, printed: str) -> bool:
+    one, other = (WALL_TIME.sub("", text).split() for text in (shown, printed))
+    if [NUMBER.sub("", word) for word in one] != [NUMBER.sub("", word) for word in other]:
+        return False
+    pairs = zip(NUMBER.findall(" ".join(one)), NUMBER.findall(" ".join(other)), strict=True)
+    return all(float(a) == pytest.approx(float(b), rel=TOLERANCE, abs=1e-4) for a, b in pairs)
+
+
+@pytest.mark.physics
+@pytest.mark.usefixtures("forks")
+def test_the_tutorial_does_what_it_says(tmp_path: Path) -> None:
+    executed: list[str] = []
+    for block in BLOCK.finditer(PAGE.read_text(encoding="utf-8")):
+        path, text = tmp_path / (block["file"] or "."), block["text"]
+        if block["kind"] == "robbdd":
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        elif block["kind"] == "diff":
+            path.write_text(edited(path.read_text(encoding="utf-8"), text), encoding="utf-8")
+        else:
+            for (program, *arguments), shown in commands(text):
+                assert program == "robbdd"
+                done = subprocess.run([*ROBBDD, *arguments], cwd=tmp_path, capture_output=True, text=True)
+                assert matches(shown, done.stdout.splitlines()), (arguments, done.stdout, done.stderr)
+                executed.append(arguments[0])
+    assert set(executed) == {"check", "run", "report", "judge"}
+
+
+def test_a_line_with_another_verdict_or_number_is_noticed() -> None:
+    line = "  ✔ cube is located at tray_ws after place-ends +16 mm"
+    assert same(line, line.replace(" +16", "    +16"))
+    assert not same(line, line.replace("✔", "✗"))
+    assert not same(line, line.replace("16", "18"))
+    assert matches(["…", line], ["any", line])
+    assert not matches([line], [line, "more"])
