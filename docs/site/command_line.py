@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from robbdd_tools.cli import argument_parser
-from robbdd_tools.commands.completion import arguments_of, commands_of
+from robbdd_tools.commands.shell_completion import arguments_of, commands_of
 
 PAGE = Path(__file__).parents[1] / "command-line.md"
 HEAD = """# Command line

@@ -269,7 +269,7 @@ def _dap(options: argparse.Namespace) -> int:
 
 
 def _completion(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.completion import print_completion
+    from robbdd_tools.commands.shell_completion import print_completion
 
     return print_completion(argument_parser(), options.shell)
 

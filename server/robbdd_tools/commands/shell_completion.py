@@ -9,12 +9,13 @@ from typing import cast
 import shtab
 
 from robbdd_tools.commands import OK
+from robbdd_tools.commands.output import print_document
 
 
 def print_completion(parser: argparse.ArgumentParser, shell: str) -> int:
     """Print the script of a shell, for all commands of a parser."""
     _complete_files(parser)
-    print(shtab.complete(parser, shell))
+    print_document(shtab.complete(parser, shell) + "\n")
     return OK
 
 
