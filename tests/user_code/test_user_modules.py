@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -65,3 +66,13 @@ def test_an_agent_that_must_not_run_code_of_users_imports_none(tmp_path: Path) -
     for value, why in (("1", "--no-user-code was given"), (UNTRUSTED, "the workspace is not trusted")):
         found = load(tmp_path, "mine:answer", **{NO_USER_CODE: value})
         assert found == [f"users' code is not run: {why}", "True"]
+
+
+def test_an_edit_within_a_second_is_executed(tmp_path: Path) -> None:
+    write(tmp_path / "mine.py", "one")
+    changed = (tmp_path / "mine.py").stat().st_mtime
+    assert load(tmp_path, "mine:answer")[0] == "one"
+    write(tmp_path / "mine.py", "two")
+    os.utime(tmp_path / "mine.py", (changed, changed))
+    assert load(tmp_path, "mine:answer")[0] == "two"
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.py"]

@@ -129,7 +129,7 @@ PICKPLACE = {
 
 def planted(code: str, folder: Path) -> Path:
     """Copy the example with a fault; return the file that shows it."""
-    shutil.copytree(EXAMPLES / "pickplace", folder, ignore=shutil.ignore_patterns(".*"))
+    shutil.copytree(EXAMPLES / "pickplace", folder, ignore=shutil.ignore_patterns(".*", "__pycache__"))
     name, old, new, (also, instead) = PICKPLACE[code]
     for path in folder.iterdir():
         text = path.read_text(encoding="utf-8")

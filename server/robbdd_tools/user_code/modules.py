@@ -49,6 +49,8 @@ def search(folder: Path | None) -> None:
             os.environ[SEARCHED] = os.pathsep.join(inherited_paths())
     if folder is not None and str(folder) not in _folders:
         _folders.append(str(folder))
+    # Python recognises a compiled module by its second and size: after a quick edit it would execute the code before.
+    sys.dont_write_bytecode = True
     others = [entry for entry in sys.path if entry not in _folders and entry not in _last]
     sys.path[:] = [*others, *_folders, *_last]
 
