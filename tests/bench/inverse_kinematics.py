@@ -7,6 +7,7 @@ Needs ``pip install mink daqp``, which the product does not. Both move the tool 
 from __future__ import annotations
 
 from importlib import import_module
+from math import inf
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +53,7 @@ class Mink:
             tasks = [self._pose, self._posture]
             velocity = self._mink.solve_ik(self._configuration, tasks, 1.0, "daqp", limits=self._limits)
             self._configuration.integrate_inplace(velocity, 1.0)
-        raise Unreachable("no solution")
+        raise Unreachable(inf, inf)
 
 
 def points(arm: Arm, robot: RobotModel) -> list[tuple[FloatArray, FloatArray, FloatArray]]:

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog import robots
 from robbdd_tools.catalog.api import GripperKind, RobotModel
 from robbdd_tools.catalog.executable import (
     ArmModel,
+    Friction,
     Implementation,
     ModelSource,
     Origin,
@@ -19,9 +21,12 @@ from robbdd_tools.catalog.executable import (
     SceneInstance,
 )
 from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.motion import ToolPose, frame_of
 from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.staging import Staging
 from world import strangers
 from world.arms import MJCF
 from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
@@ -41,13 +46,18 @@ def robot(folder: Path, text: str, arm: ArmModel | None = None, name: str = "") 
     return robot_from(source(folder, text, arm, name), ARM)
 
 
+def picking(folder: Path, text: str) -> Execution:
+    """Return the execution in which an arm from a file moves the cube into the bin."""
+    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(folder, text),)),))
+    execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
+    spec = replace(scenario(replace(SCENE, agents=(ARM,)), 1), execution=execution)
+    return Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
+
+
 @pytest.mark.physics
 @pytest.mark.parametrize("text", [strangers.SCARA, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF])
 def test_an_arm_picks_and_places_with_the_data_in_its_file_alone(tmp_path: Path, text: str) -> None:
-    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(tmp_path, text),)),))
-    execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
-    spec = replace(scenario(replace(SCENE, agents=(ARM,)), 1), execution=execution)
-    run = Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
+    run = picking(tmp_path, text)
     assert run.run_behaviour(0), run.trace.remark
     (cube, _), (container, _) = run.simulation.pose(CUBE), run.simulation.pose("env:bin1")
     assert abs(cube[:2] - container[:2]).max() < 0.15
@@ -85,6 +95,37 @@ def test_what_a_scene_states_replaces_what_the_file_says(tmp_path: Path) -> None
     stated = ArmModel(home=(0.0, -0.5, 0.1, 0.2), velocity=(1.0, 2.0, 3.0, 4.0), stroke=0.06)
     found = robot(tmp_path, strangers.SCARA, stated)
     assert (found.home, found.velocity_limits, found.stroke) == (stated.home, stated.velocity, 0.06)
+
+
+def test_a_home_is_found_from_which_the_arm_reaches_far(tmp_path: Path) -> None:
+    # At most places, the wrist of this arm can be turned inwards as well; then it reaches 0.2 m less.
+    text = (Path(robots.__path__[0]) / "ur10.xml").read_text(encoding="utf-8")
+    arm = arm_of(robot(tmp_path, text))
+    for height in (0.0, 0.25):
+        place, turn = frame_of(ToolPose(1.2, 0.3, height, 0.2))
+        reached, _ = arm.forward(arm.solve(arm.towards(place), place, turn))
+        assert reached == pytest.approx(place, abs=1e-4)
+
+
+def test_gripping_faces_without_friction_are_a_fault_of_the_model_unless_the_scene_states_it(tmp_path: Path) -> None:
+    smooth = strangers.SCARA.replace('friction="1 .01 .001"', 'friction="0 .01 .001"')
+    model = source(tmp_path, smooth)
+    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (model,)),))
+    words = (
+        "cell.scenex:3:7: the gripping faces in arm.xml have no friction, so they hold nothing: of two surfaces, the"
+    )
+    with pytest.raises(SceneError, match=words):
+        Staging(instance, 1).robot(ARM)
+    stated = replace(instance, frictions=(Friction(CUBE, ARM, 0.6),))
+    assert Staging(stated, 1).robot(ARM) is not None
+
+
+@pytest.mark.physics
+def test_a_failure_to_reach_says_by_how_much_or_what_is_in_the_way(tmp_path: Path) -> None:
+    short = strangers.SCARA.replace(".45 0 0", ".25 0 0").replace('pos=".45 0 .06"', 'pos=".25 0 .06"')
+    run = picking(tmp_path, short)
+    assert not run.run_behaviour(0)
+    assert re.fullmatch(r"env:own cannot reach (env:cube1|a free place .*): its tool stays \d+ mm short", run.failure)
 
 
 FACES = ArmModel(pads=("left_pad", "right_pad"))

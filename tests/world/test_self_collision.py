@@ -14,8 +14,11 @@ from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.composition import COLUMN, load_robot
+from robbdd_tools.world.motion import ToolPose, frame_of
+from robbdd_tools.world.reaching import Obstruction
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from world.worlds import CUBE, PANDA, execution, pick_place
 
@@ -76,6 +79,24 @@ def test_postures_in_which_the_arm_is_in_itself_are_not_clear() -> None:
     clearance = Clearance(simulation, simulation.robots[PANDA], CUBE, simulation.data)
     assert clearance.depth(np.array(HOME)) == 0.0
     assert clearance.depth(np.array(INTO_ITSELF)) > 0.005
+    assert clearance.hit(np.array(INTO_ITSELF)).owner == "itself"
+
+
+def test_a_posture_in_the_table_names_the_table() -> None:
+    simulation = execution().simulation
+    robot = simulation.robots[PANDA]
+    down = arm_of(robot.model).solve(np.array(HOME), *frame_of(ToolPose(0.5, 0.0, -0.1, 0.0)))
+    hit = Clearance(simulation, robot, CUBE, simulation.data).hit(down)
+    assert hit.owner == "env:bench"
+    assert str(Obstruction(touched={hit.owner: None})) == ": the arm would touch env:bench"
+
+
+def test_of_several_poses_out_of_reach_the_nearest_is_named() -> None:
+    reason = Obstruction()
+    assert str(reason) == ""
+    for place, turn in ((0.2, 0.0), (0.0, 0.0349), (0.05, 0.1)):
+        reason.note(Unreachable(place, turn))
+    assert str(reason) == ": its tool stays turned 2.0° away"
 
 
 @pytest.mark.parametrize("name", list(load_catalog().robots))

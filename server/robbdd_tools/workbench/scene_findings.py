@@ -88,11 +88,14 @@ def request_for(instances: list[SceneInstance]) -> str:
 def _with_short_names(instance: SceneInstance) -> SceneInstance:
     """Return an instance whose elements have their local names, as in the text, if these are unambiguous."""
     local = [one.element.replace("#", "/").rpartition("/")[2] for one in instance.elements]
-    elements = (
-        replace(one, element=name) if local.count(name) == 1 else one
-        for one, name in zip(instance.elements, local, strict=True)
-    )
-    return replace(instance, elements=tuple(elements), frictions=())
+    short = {one.element: name for one, name in zip(instance.elements, local, strict=True) if local.count(name) == 1}
+
+    def named(element: str) -> str:
+        return short.get(element, element)
+
+    elements = (replace(one, element=named(one.element)) for one in instance.elements)
+    frictions = (replace(one, first=named(one.first), second=named(one.second)) for one in instance.frictions)
+    return replace(instance, elements=tuple(elements), frictions=tuple(frictions))
 
 
 def file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:

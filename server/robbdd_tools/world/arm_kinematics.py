@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 CLOSE = 5e-5
 """Remaining pose error (m and rad) at which a solution is accepted."""
+VISIBLE = 1e-3
+"""Distance (m) from the goal from which on it is the reason why a pose is out of reach, not the orientation."""
 ROUNDS = 60
 MIN_DAMPING, DAMPING = 1e-6, 0.01
 """Damping of the least squares: a minimum, and a share of the squared pose error.
@@ -36,7 +39,12 @@ STRIDE = 0.3
 
 
 class Unreachable(BehaviourError):
-    """No joint positions within the limits reach the tool pose."""
+    """No joint positions within the limits reach the tool pose; ``short`` is the smallest error (m or rad) found."""
+
+    def __init__(self, place: float, turn: float) -> None:
+        """Describe the remaining errors of place (m) and orientation (rad)."""
+        super().__init__(f"{1000 * place:.0f} mm short" if place >= VISIBLE else f"turned {degrees(turn):.1f}° away")
+        self.short = max(place, turn)
 
 
 class Arm:
@@ -122,7 +130,7 @@ class Arm:
             if error < CLOSE:
                 return joints
             joints = self._improve(joints, gap, posture)
-        raise Unreachable(f"{1000 * error:.0f} mm short")
+        raise Unreachable(_largest(gap[:3]), _largest(gap[3:]))
 
     def _turn_left(self, turn: FloatArray) -> None:
         """Write the rotation vector (3,) rad, world frame, from the tool's current orientation to the goal's."""

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.owners import geom_owners
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.robot import Robot
     from robbdd_tools.world.simulation import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """The deepest penetration (m) of an arm into anything else, and its owner; 0 and empty without a collision."""
+
+    depth: float
+    owner: str
 
 
 class Clearance:
@@ -31,6 +41,10 @@ class Clearance:
 
     def depth(self, joints: FloatArray) -> float:
         """Return the penetration (m) of the arm with open fingers into anything else; 0 without a collision."""
+        return self.hit(joints).depth
+
+    def hit(self, joints: FloatArray) -> Hit:
+        """Return the deepest collision of the arm with open fingers."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._robot.joints] = joints
         self._simulation.open_fingers(self._robot, self._data)
@@ -39,4 +53,13 @@ class Clearance:
         mujoco.mj_collision(self._model, self._data)
         pairs = self._data.contact.geom
         hits = self._own[pairs].any(axis=1) & ~self._ignored[pairs].any(axis=1)
-        return max(0.0, -float(np.min(self._data.contact.dist[hits], initial=0.0)))
+        distances = np.where(hits, self._data.contact.dist, 0.0)
+        if np.min(distances, initial=0.0) >= 0.0:
+            return Hit(0.0, "")
+        deepest = int(np.argmin(distances))
+        return Hit(-float(distances[deepest]), self._owner(pairs[deepest].tolist()))
+
+    def _owner(self, pair: list[int]) -> str:
+        owners = geom_owners(self._model, self._simulation.robots)
+        other = next((owners[geom] for geom in pair if not self._own[geom]), "")
+        return other or "itself"

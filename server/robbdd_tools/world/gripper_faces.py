@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.api import FloatArray, RobotModel
+    from robbdd_tools.catalog.executable import ModelSource
 
 Faces = tuple[tuple[str, ...], ...]
 """The names of the geoms of each gripping face."""
@@ -25,6 +27,8 @@ OPENS = 0.015
 """Smallest opening (m) of fingers: parts of a linkage that approach each other by less are none."""
 LEVEL = 0.003
 """Difference (m) of the distances of closed shapes up to which they form one gripping face."""
+SMOOTH = 0.01
+"""Coefficient below which a surface has no friction; smaller ones cannot be configured either."""
 
 
 def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, FloatArray]) -> Faces:
@@ -151,3 +155,17 @@ def length_of(model: Any, joint: str) -> float:
     below = [g for g in range(model.ngeom) if body in _ancestors(model, int(model.geom_bodyid[g]))]
     anchor = data.xanchor[found.id]
     return max((float(np.linalg.norm(data.geom_xpos[geom] - anchor)) for geom in below), default=0.0)
+
+
+def refuse_smooth_faces(spec: Any, robot: RobotModel, source: ModelSource) -> None:
+    """Raise ``SceneError`` if no gripping face of an arm in a file has friction, so that they hold 2 μ N = 0.
+
+    Such files count on the engine's own rule, by which the larger coefficient of two surfaces decides.
+    """
+    if max(float(spec.geom(pad).friction[0]) for pad in robot.pads) >= SMOOTH:
+        return
+    raise SceneError(
+        f"the gripping faces in {source.name} have no friction, so they hold nothing: of two surfaces, the smaller "
+        "coefficient counts. State it in the scene instance: friction of obj <…> on agn <…>: 0.8",
+        origin=source.origin,
+    )

@@ -11,7 +11,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.self_collision import NEAR
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
@@ -25,6 +25,12 @@ CLOSE = 1e-3
 """Pose error (m and rad) at which a posture is accepted."""
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15)
 """Places of the tool: shares of the arm's reach ahead of the base, and heights (m) above it."""
+OUTWARDS, LEVELS = (0.65, 0.75, 0.85, 0.95), (0.25, 0.0)
+"""Places at which a posture is compared with others: shares of the arm's reach from the middle on, heights (m)."""
+JUMP = 1.0
+"""Difference (rad, m) from which on two neighbouring postures are not on one path."""
+SAME = 0.1
+"""Difference (rad, m) up to which two postures are the same."""
 
 
 def find_home(
@@ -39,11 +45,20 @@ def find_home(
     for posture in search.key_frames():
         if search.points_down(posture):
             return tuple(posture.tolist())
-    found = max(search.postures(), key=search.score, default=None)
+    found = max(_different(search.postures()), key=search.quality, default=None)
     if found is None:
         text = f"the arm in {source.name} cannot point its tool straight down in front of its base"
         raise SceneError(f"{text}: check 'tool', or state 'home'", origin=source.origin)
     return tuple(round(float(value), 6) for value in found)
+
+
+def _different(postures: Iterable[FloatArray]) -> list[FloatArray]:
+    """Return the postures without those that are the same as another one."""
+    found: list[FloatArray] = []
+    for posture in postures:
+        if all(np.abs(posture - other).max() > SAME for other in found):
+            found.append(posture)
+    return found
 
 
 class _Search:
@@ -60,6 +75,7 @@ class _Search:
         self._low = np.where(limited, model.jnt_range[numbers, 0], -wide)
         self._high = np.where(limited, model.jnt_range[numbers, 1], wide)
         self._near = self._always_near(model.body(palm).id)
+        self._reach = 0.0
 
     def key_frames(self) -> Iterator[FloatArray]:
         """Yield the postures of the file's key frames, those called home first."""
@@ -79,24 +95,42 @@ class _Search:
         dice = np.random.default_rng(1)
         span = np.minimum(self._high, np.pi) - np.maximum(self._low, -np.pi)
         starts = np.maximum(self._low, -np.pi) + dice.random((SEEDS, len(self._low))) * span
-        reach = max(float(np.hypot(*self._forward(start)[0][:2])) for start in starts)
+        self._reach = max(float(np.hypot(*self._forward(start)[0][:2])) for start in starts)
         for height in HEIGHTS:
             for share in DISTANCES:
-                goal = np.array([share * reach, 0.0, height])
+                goal = np.array([share * self._reach, 0.0, height])
                 found = [one for start in starts if (one := self._solved(start, goal)) is not None]
                 clear = [one for one in found if self._is_clear_at(one)]
                 if clear:
                     yield from clear
                     return
 
-    def score(self, posture: FloatArray) -> float:
+    def quality(self, posture: FloatArray) -> tuple[int, float]:
+        """Return the number of places that the arm reaches from a posture, then how comfortable the posture is.
+
+        An arm has up to eight postures for one place, between which it cannot change on its way; a wrist that is turned
+        inwards reaches less of the table.
+        """
+        return sum(self._reached(posture, height) for height in LEVELS), self._comfort(posture)
+
+    def _reached(self, posture: FloatArray, height: float) -> int:
+        """Return how many of the places at a height the arm reaches one after the other."""
+        for number, share in enumerate(OUTWARDS):
+            after = self._solved(posture, np.array([share * self._reach, 0.0, height]))
+            if after is None or np.abs(after - posture).max() > JUMP or not self._is_clear_at(after):
+                return number
+            posture = after
+        return len(OUTWARDS)
+
+    def _comfort(self, posture: FloatArray) -> float:
         """Return how far a posture is from its joint limits, as a share, and from a stretched arm."""
         room = np.minimum(posture - self._low, self._high - posture) / (self._high - self._low)
         self._forward(posture)
         stretches: list[float] = np.linalg.svd(self._jacobian()[:3], compute_uv=False).tolist()
         above = float(self._data.xpos[1:, 2].mean())
-        # An arm that bends upwards keeps its elbow off the table.
-        return float(np.min(room)) + stretches[-1] + above
+        aside = float(np.abs(self._data.xpos[1:, 1]).mean())
+        # An arm that bends upwards keeps its elbow off the table; one in the plane of its tool turns to both sides.
+        return float(np.min(room)) + stretches[-1] + above - aside
 
     def _forward(self, posture: FloatArray) -> tuple[FloatArray, FloatArray]:
         self._data.qpos[self._places] = posture

@@ -18,7 +18,7 @@ from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.gripper import Step, gripper_of
 from robbdd_tools.world.motion import ToolPose, plan, present_pose, tool_pose
 from robbdd_tools.world.put_down import Target, has_room, targets
-from robbdd_tools.world.reaching import Approach, approaches, at_travel, joints_at
+from robbdd_tools.world.reaching import Approach, Obstruction, approaches, at_travel, joints_at
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -74,7 +74,7 @@ class PickPlace:
         yield from self._until_at_rest(name)
         self._emit("pick-start")
         best = yield from self._approach(name)
-        yield from self._gripper.take(self, best.at, name)
+        yield from self._take(best, name)
         self._held, self._grasp = name, best.grasp
         yield from self.move(self._at_travel(best.at))
         self._emit("pick-end")
@@ -146,11 +146,20 @@ class PickPlace:
 
     def _choose_grasp(self, name: str) -> Approach:
         """Return the grasp with the most room for the hand."""
-        found = approaches(self._simulation, self._robot, name)
+        missed = Obstruction()
+        found = approaches(self._simulation, self._robot, name, missed=missed)
         best = min(found, key=lambda one: (round(one.depth, 4), abs(one.at.turn)), default=None)
         if best is None:
-            raise BehaviourError(f"{self._robot.name} cannot reach {name}")
+            raise BehaviourError(f"{self._robot.name} cannot reach {name}{missed}")
         return best
+
+    def _take(self, best: Approach, name: str) -> Step:
+        try:
+            yield from self._gripper.take(self, best.at, name)
+        except BehaviourError as error:
+            if not best.touched:
+                raise
+            raise BehaviourError(f"{error}: at the grasp, the arm touches {best.touched}") from error
 
     def _choose_place(self, name: str, workspaces: Sequence[str], grasp: Grasp) -> ToolPose:
         if len(workspaces) == 1:
@@ -170,13 +179,14 @@ class PickPlace:
         """Return the lowest tool pose over the first target that the arm reaches without a collision."""
         simulation, robot = self._simulation, self._robot
         clearance = Clearance(simulation, robot, name, simulation.data)
+        missed = Obstruction()
         for target in targets(simulation, robot, name, workspace):
-            pose = self._lower_onto(target, grasp, clearance)
+            pose = self._lower_onto(target, grasp, clearance, missed)
             if pose is not None:
                 return pose
-        raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}")
+        raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}{missed}")
 
-    def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance) -> ToolPose | None:
+    def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance, missed: Obstruction) -> ToolPose | None:
         robot = self._robot
         x, y, surface = target.position
         height = surface + grasp.below + target.gap
@@ -186,10 +196,13 @@ class PickPlace:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
             try:
                 joints = joints_at(self._arm, self._at_travel(pose), pose)
-            except Unreachable:
+            except Unreachable as error:
+                missed.note(error)
                 return None
-            if clearance.depth(joints) == 0.0:
+            hit = clearance.hit(joints)
+            if hit.depth == 0.0:
                 return pose
+            missed.touched[hit.owner] = None
             height += 0.02
         return None
 

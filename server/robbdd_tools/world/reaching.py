@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import nan, pi
 from typing import TYPE_CHECKING, Any
@@ -34,7 +34,7 @@ SAME = 1e-4
 class Approach:
     """A grasp with the tool pose above it and at it, and the joint positions (rad) there.
 
-    ``depth`` is the penetration (m) of the arm into anything else.
+    ``depth`` is the penetration (m) of the arm into anything else, and ``touched`` the deepest element.
     """
 
     grasp: Grasp
@@ -42,6 +42,27 @@ class Approach:
     at: ToolPose
     joints: FloatArray
     depth: float
+    touched: str
+
+
+@dataclass(slots=True)
+class Obstruction:
+    """Why an arm cannot reach any of several poses: the one that it misses least, the elements that it would touch."""
+
+    nearest: Unreachable | None = None
+    touched: dict[str, None] = field(default_factory=dict[str, None])
+
+    def note(self, missed: Unreachable) -> None:
+        """Add a pose that is out of reach."""
+        if self.nearest is None or missed.short < self.nearest.short:
+            self.nearest = missed
+
+    def __str__(self) -> str:
+        """Return the reason as the end of a message; empty without any."""
+        if self.touched:
+            # An arm that reaches some of the poses is not too short.
+            return f": the arm would touch {', '.join(self.touched)}"
+        return "" if self.nearest is None else f": its tool stays {self.nearest}"
 
 
 def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
@@ -57,9 +78,12 @@ def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
     return arm.solve(start, *frame_of(at))
 
 
-def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None) -> Iterator[Approach]:
+def approaches(
+    simulation: Simulation, robot: Robot, name: str, data: Any = None, missed: Obstruction | None = None
+) -> Iterator[Approach]:
     """Yield every grasp of an object within the joint limits, in the current state or in that of ``data``.
 
+    How far the others are out of reach is noted in ``missed``.
     Raises ``BehaviourError`` when the scene has no such object or the gripper is too small for it.
     """
     objects = simulation.world.cast.objects
@@ -75,9 +99,12 @@ def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None
         above = at_travel(robot, at)
         try:
             joints = joints_at(arm, above, at)
-        except Unreachable:
+        except Unreachable as error:
+            if missed is not None:
+                missed.note(error)
             continue
-        yield Approach(grasp, above, at, joints, clearance.depth(joints))
+        hit = clearance.hit(joints)
+        yield Approach(grasp, above, at, joints, hit.depth, hit.owner)
 
 
 class ReachSampler:

@@ -12,10 +12,11 @@ import numpy as np
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.frames import Frames
+from robbdd_tools.world.gripper_faces import refuse_smooth_faces
 from robbdd_tools.world.model_files import FromFile, load, object_from, usable
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name
 from robbdd_tools.world.pose import Pose
-from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.robot_files import prepared_robot, robot_from
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, RobotModel
@@ -101,7 +102,10 @@ class Staging:
             if found is None:
                 raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
             return found
-        return robot_from(chosen, element)
+        found = robot_from(chosen, element)
+        if not any(element in (friction.first, friction.second) for friction in self.frictions):
+            refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
+        return found
 
     def pose(self, element: str, attempt: int = 0) -> Pose | None:
         """Return the place of an element, ``None`` if not defined; raises ``SceneError``.

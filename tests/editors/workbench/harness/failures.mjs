@@ -25,7 +25,7 @@ export const FAILURES = {
     line: /with-ball0:/,
     cause: /^there is no room left for 'ball\d' among \d other objects \(unknown\)/,
   },
-  unreachable: { instance: "far_sim", line: /Behaviour/, cause: /^panda cannot reach a free place at left_ws \(violated/ },
+  unreachable: { instance: "far_sim", line: /Behaviour/, cause: /^panda cannot reach a free place at left_ws: its tool stays \d+ mm short \(violated/ },
   "lost-grip": {
     given: "heavy: holds(<thing> has config mass = <weight>, before <evt-pick-start>)",
     values: { weight: "{ 10 }" },
