@@ -22,7 +22,7 @@ JUDGED = ClauseJudged(0, 5, "unknown", None, "", None, "", None)
     ("reason", "shown"),
     [
         ("env:panda cannot reach a free place at env:left_ws", "panda cannot reach a free place at left_ws"),
-        ("env:panda cannot reach env:left_ws: its tool stays short", "panda cannot reach left_ws: its tool stays short"),
+        ("env:panda cannot reach env:left_ws: 9 mm short", "panda cannot reach left_ws: 9 mm short"),
         ("event t:evt-place-end never occurred: lost env:cube0", "event evt-place-end never occurred: lost cube0"),
         ("no step definition for 'it is in \"env:bin.left\"'", "no step definition for 'it is in \"bin.left\"'"),
         ("bench.scenex:37:29: there is no model file m.xml", "there is no model file m.xml (bench.scenex, line 37)"),
