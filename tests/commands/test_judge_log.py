@@ -15,7 +15,7 @@ import pytest
 
 from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
-from logs.bags import Message, text, transform, truth, write
+from logs.bags import ROS2, Message, detected, goals, text, transform, truth, write
 
 pytestmark = pytest.mark.physics
 NOT_IN_A_LOG = {"can reach", "has config"}
@@ -162,6 +162,32 @@ def test_a_frame_of_another_name_is_named_by_an_argument(models: Path, tmp_path:
     assert "name it with --frame cube0=FRAME" in remarks
     found, _ = judged(models, tmp_path, messages, "--frame", "cube0=object_7")
     assert verdicts(found)["at-goal"] == "holds"
+
+
+def test_a_drive_of_detections_and_actions_holds(models: Path, tmp_path: Path) -> None:
+    """The camera detects the cube, and actions report when they begin and end."""
+    plain = drive()
+    seen = [_replaced(one) for one in plain if one.topic in ("/tf", "/panda/holds")]
+    fixed = [one for one in plain if one.topic == "/tf_static"]
+    states = [(1.0, "pick", 2), (3.0, "pick", 4), (6.0, "place", 2), (8.0, "place", 4)]
+    done = [goals(action, {"a": number}, time) for time, action, number in states]
+    found, remarks = judged(models, tmp_path, [*fixed, *seen, *done], "--world", "map")
+    assert set(verdicts(found).values()) == {"holds"}, (found, remarks)
+    failed = [*done[:3], goals("place", {"a": 6}, 8.0)]
+    found, remarks = judged(models, tmp_path, [*fixed, *seen, *failed], "--world", "map")
+    assert verdicts(found)["at-goal"] == "unknown"
+    assert "a goal on '/place/_action/status' did not succeed: 'place-end' is not reported" in remarks
+
+
+def _replaced(one: Message) -> Message:
+    """Turn the transform of the cube into a detection."""
+    if one.topic != "/tf":
+        return one
+    (moved,) = one.make(ROS2).transforms
+    if moved.child_frame_id != "cube0":
+        return one
+    where = moved.transform.translation
+    return detected([("", "cube0", (where.x, where.y, where.z))], one.received, topic="/camera/objects")
 
 
 ROBOT = """import "pickplace.bdd"

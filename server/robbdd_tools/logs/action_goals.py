@@ -1,0 +1,77 @@
+"""Events of actions: a goal that begins to be executed, and one that succeeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+OLD = 1_000_000_000
+"""Age (ns) from which a goal that is executed in the first message of a topic began before the log."""
+
+
+class GoalState(Enum):
+    """The state of a goal. A goal that has ended never changes again."""
+
+    WAITING = 0
+    ACTIVE = 1
+    SUCCEEDED = 2
+    FAILED = 3
+
+
+ROS2_STATES = {1: GoalState.WAITING, 2: GoalState.ACTIVE, 3: GoalState.ACTIVE, 4: GoalState.SUCCEEDED} | dict.fromkeys(
+    (5, 6), GoalState.FAILED
+)
+"""``action_msgs/GoalStatus``: accepted, executing, cancelling, succeeded, cancelled, aborted."""
+ROS1_STATES = (
+    {0: GoalState.WAITING, 7: GoalState.WAITING, 1: GoalState.ACTIVE, 6: GoalState.ACTIVE, 3: GoalState.SUCCEEDED}
+) | dict.fromkeys((2, 4, 5, 8), GoalState.FAILED)
+"""``actionlib_msgs/GoalStatus``: pending, recalling, active, preempting, succeeded, and the four ways to fail."""
+
+
+def action_of(topic: str) -> str:
+    """Return the name of an action: ``pick`` of ``/arm/pick/_action/status`` and of ``/arm/pick/status``."""
+    parts = [part for part in topic.split("/") if part and part != "_action"]
+    return parts[-2] if len(parts) > 1 else parts[-1]
+
+
+@dataclass
+class ActionGoals:
+    """Turns the states of the goals of actions into texts: ``pick-start`` and ``pick-end``.
+
+    The start of a goal that was executed already before the log begins is unknown, and so is the end of a goal that had
+    ended before: they give no text, but a remark. A goal that fails has no end.
+    """
+
+    texts: list[tuple[int, str, str]] = field(default_factory=list[tuple[int, str, str]])
+    """Time (ns of reception), topic and text of each event."""
+    remarks: list[str] = field(default_factory=list[str])
+    _states: dict[tuple[str, str], GoalState] = field(default_factory=dict[tuple[str, str], GoalState])
+    _topics: set[str] = field(default_factory=set[str])
+
+    def take(self, topic: str, received: int, goals: list[tuple[str, int, GoalState]]) -> None:
+        """Apply a message: the identity of each goal, the time (ns) at which it was accepted, and its state."""
+        first = topic not in self._topics
+        self._topics.add(topic)
+        for goal, accepted, state in goals:
+            before = self._states.get((topic, goal))
+            self._states[topic, goal] = state
+            if first and state is not GoalState.WAITING and self._is_old(received, accepted, state):
+                self.remarks.append(f"a goal on '{topic}' began before the log: its start is not known")
+                continue
+            self._report(topic, received, before, state)
+
+    def _is_old(self, received: int, accepted: int, state: GoalState) -> bool:
+        return state is not GoalState.ACTIVE or received - accepted > OLD
+
+    def _report(self, topic: str, received: int, before: GoalState | None, state: GoalState) -> None:
+        if state is before:
+            return
+        name = action_of(topic)
+        if state is GoalState.ACTIVE:
+            self.texts.append((received, topic, f"{name}-start"))
+        if state is GoalState.SUCCEEDED:
+            self.texts.append((received, topic, f"{name}-end"))
+            if before is not GoalState.ACTIVE:
+                self.remarks.append(f"no message on '{topic}' says when a goal began: its start is not known")
+        if state is GoalState.FAILED:
+            self.remarks.append(f"a goal on '{topic}' did not succeed: '{name}-end' is not reported")

@@ -1,0 +1,213 @@
+"""Collect the poses, texts and truth values of the messages of a ROS bag."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from robbdd_tools.logs.action_goals import ROS1_STATES, ROS2_STATES, ActionGoals, GoalState
+from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, Truths
+from robbdd_tools.logs.pose_lists import PoseLists
+
+MIN_OFFSET = 1.0
+"""Seconds between the clocks of headers and of reception from which they count as different clocks."""
+STATIC = "tf_static"
+WORLD = "world"
+"""Frame of the poses of a simulator."""
+
+
+class RosContents:
+    """Collects what the messages of a bag say. Times are in ns."""
+
+    def __init__(self) -> None:
+        self.builder = TrackBuilder()
+        self.texts: list[tuple[int, str, str]] = []
+        self.truths: dict[str, list[tuple[int, float]]] = {}
+        self.offsets: list[int] = []
+        self.lists = PoseLists()
+        self.goals = ActionGoals()
+        self.remarks: list[str] = []
+        self._received = TrackBuilder()
+        """Poses without headers, by the time of reception."""
+
+    def transforms(self, topic: str, received: int, message: Any) -> None:
+        """Take the transforms of ``TFMessage``; those of ``/tf_static`` hold at all times."""
+        for one in message.transforms:
+            self._transform(topic, received, one)
+
+    def _transform(self, topic: str, received: int, one: Any) -> None:
+        static = topic.rpartition("/")[2] == STATIC
+        stamp = _stamp(one.header.stamp)
+        if not static:
+            self.offsets.append(received - stamp)
+        where, turn = one.transform.translation, one.transform.rotation
+        place, rotation = (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
+        child, parent = one.child_frame_id.lstrip("/"), one.header.frame_id.lstrip("/")
+        self.builder.add(child, parent, stamp, place, rotation, static=static)
+
+    def pose(self, topic: str, received: int, message: Any) -> None:
+        """Take the pose of the frame that the topic names."""
+        self._stamped(topic, received, message.header, message.pose)
+
+    def estimate(self, topic: str, received: int, message: Any) -> None:
+        """Take a pose with its covariance; the covariance is not used."""
+        self._stamped(topic, received, message.header, message.pose.pose)
+
+    def odometry(self, topic: str, received: int, message: Any) -> None:
+        """Take the pose of ``child_frame_id``, or of the topic without one."""
+        self._stamped(message.child_frame_id or topic, received, message.header, message.pose.pose)
+
+    def poses(self, topic: str, received: int, message: Any) -> None:
+        """Take a list of poses without names: ``topic/0``, ``topic/1`` …"""
+        frames = self.lists.unnamed(topic, len(message.poses))
+        for frame, one in zip(frames, message.poses, strict=True):
+            self._stamped(frame, received, message.header, one)
+
+    def states(self, topic: str, received: int, message: Any) -> None:
+        """Take the models or links of a simulator, by their names."""
+        frames = self.lists.named(topic, message.name)
+        for frame, one in zip(frames, message.pose, strict=True):
+            _add(self._received, frame, WORLD, received, one)
+
+    def detection(self, topic: str, received: int, message: Any) -> None:
+        """Take one detected thing."""
+        self._detections(topic, received, message.header, [message])
+
+    def detections(self, topic: str, received: int, message: Any) -> None:
+        """Take detected things."""
+        self._detections(topic, received, message.header, message.detections)
+
+    def _detections(self, topic: str, received: int, header: Any, found: Iterable[Any]) -> None:
+        named = [(name, one) for one in found if (name := self._name(topic, one))]
+        frames = self.lists.named(topic, [name for name, _ in named])
+        for frame, (_, one) in zip(frames, named, strict=True):
+            # Some detectors fill in only the header of the list.
+            own = one.header if one.header.frame_id else header
+            pose = _detected_pose(one)
+            self.lists.seen(topic, frame, _stamp(own.stamp), (pose.position.x, pose.position.y, pose.position.z))
+            self._stamped(frame, received, own, pose)
+
+    def _name(self, topic: str, one: Any) -> str:
+        name = _detected(one)
+        if not name:
+            self.lists.nameless.add(topic)
+        return name
+
+    def text(self, topic: str, received: int, message: Any) -> None:
+        """Take a text, which may report an event."""
+        self.texts.append((received, topic, str(message.data)))
+
+    def truth(self, topic: str, received: int, message: Any) -> None:
+        """Take a truth value."""
+        self.truths.setdefault(topic, []).append((received, 1.0 if message.data else -1.0))
+
+    def trinary(self, topic: str, received: int, message: Any) -> None:
+        """Take a truth value that may be unknown."""
+        # The type defines its own values; a stamped one contains it.
+        value = getattr(message, "trinary", message)
+        known = {int(value.TRUE): 1.0, int(value.FALSE): -1.0}
+        self.truths.setdefault(topic, []).append((received, known.get(int(value.value), math.nan)))
+
+    def goal_states(self, topic: str, received: int, message: Any) -> None:
+        """Take the states of an action's goals."""
+        found: list[tuple[str, int, GoalState]] = []
+        for one in message.status_list:
+            if hasattr(one, "goal_info"):
+                info, states = one.goal_info, ROS2_STATES
+                goal, accepted = bytes(info.goal_id.uuid).hex(), _stamp(info.stamp)
+            else:
+                states = ROS1_STATES
+                goal, accepted = str(one.goal_id.id), _stamp(one.goal_id.stamp)
+            found.append((goal, accepted, states.get(int(one.status), GoalState.WAITING)))
+        self.goals.take(topic, received, found)
+
+    def finish(self) -> LogContents:
+        """Return the contents, with times in s since the earliest message that is used."""
+        shift = self._shift()
+        texts = sorted((received - shift, topic, text) for received, topic, text in (*self.texts, *self.goals.texts))
+        truths = {topic: sorted((time - shift, one) for time, one in found) for topic, found in self.truths.items()}
+        stamps = [*self.builder.bounds(), *(time - shift for time in self._received.bounds())]
+        stamps += [time for time, _, _ in texts]
+        stamps += [time for found in truths.values() for time, _ in found]
+        begin, end = min(stamps, default=0), max(stamps, default=0)
+        tracks = self.builder.tracks(begin) | self._received.tracks(begin + shift)
+        return LogContents(
+            {frame: track for frame, track in tracks.items() if not self.lists.ambiguous(frame)},
+            tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in texts),
+            (end - begin) / 1e9,
+            (*self.remarks, *self.lists.remarks(), *self.goals.remarks),
+            {topic: _truths(found, begin) for topic, found in truths.items()},
+        )
+
+    def _shift(self) -> int:
+        """Return by how much (ns) the clock of reception is ahead of the headers' clock; 0 if they are the same."""
+        self.remarks.insert(0, "messages are stamped by their headers, and those without one by their reception")
+        offset = int(np.median(self.offsets)) if self.offsets else 0
+        if abs(offset) <= MIN_OFFSET * 1e9:
+            return 0
+        words = f"the time of reception is {offset / 1e9:.3f} s ahead of the headers, and was corrected"
+        self.remarks.insert(1, words)
+        return offset
+
+    def _stamped(self, name: str, received: int, header: Any, pose: Any) -> None:
+        stamp = _stamp(header.stamp)
+        self.offsets.append(received - stamp)
+        _add(self.builder, name, header.frame_id, stamp, pose)
+
+
+READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
+    "tf2_msgs/msg/TFMessage": RosContents.transforms,
+    "tf/msg/tfMessage": RosContents.transforms,
+    "geometry_msgs/msg/PoseStamped": RosContents.pose,
+    "geometry_msgs/msg/PoseWithCovarianceStamped": RosContents.estimate,
+    "geometry_msgs/msg/PoseArray": RosContents.poses,
+    "nav_msgs/msg/Odometry": RosContents.odometry,
+    "gazebo_msgs/msg/ModelStates": RosContents.states,
+    "gazebo_msgs/msg/LinkStates": RosContents.states,
+    "vision_msgs/msg/Detection3D": RosContents.detection,
+    "vision_msgs/msg/Detection3DArray": RosContents.detections,
+    "std_msgs/msg/String": RosContents.text,
+    "std_msgs/msg/Bool": RosContents.truth,
+    "bdd_ros2_interfaces/msg/Trinary": RosContents.trinary,
+    "bdd_ros2_interfaces/msg/TrinaryStamped": RosContents.trinary,
+    "action_msgs/msg/GoalStatusArray": RosContents.goal_states,
+    "actionlib_msgs/msg/GoalStatusArray": RosContents.goal_states,
+}
+"""Types of messages → how they are read."""
+
+
+def _add(builder: TrackBuilder, frame: str, parent: str, stamp: int, pose: Any) -> None:
+    where, turn = pose.position, pose.orientation
+    place, rotation = (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
+    builder.add(frame.lstrip("/"), parent.lstrip("/"), stamp, place, rotation)
+
+
+def _detected(one: Any) -> str:
+    """Return the name of a detected thing: its tracking id or else its most likely class; empty if it has neither."""
+    tracked = getattr(one, "id", "") or getattr(one, "tracking_id", "")
+    if tracked or not len(one.results):
+        return str(tracked)
+    best = max(one.results, key=lambda result: float(getattr(result, "hypothesis", result).score))
+    hypothesis = getattr(best, "hypothesis", best)
+    return str(hypothesis.class_id if hasattr(hypothesis, "class_id") else hypothesis.id)
+
+
+def _detected_pose(one: Any) -> Any:
+    """Return the pose of the most likely class, or the centre of the box if a detector fills in only the box."""
+    if not len(one.results):
+        return one.bbox.center
+    best = max(one.results, key=lambda result: float(getattr(result, "hypothesis", result).score))
+    place = best.pose.pose.position
+    return best.pose.pose if any((place.x, place.y, place.z)) else one.bbox.center
+
+
+def _truths(found: list[tuple[int, float]], begin: int) -> Truths:
+    times = np.array([time - begin for time, _ in found]) / 1e9
+    return Truths(times, np.array([value for _, value in found]))
+
+
+def _stamp(stamp: Any) -> int:
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
