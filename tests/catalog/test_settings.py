@@ -21,6 +21,7 @@ def test_the_documented_names_are_known() -> None:
     assert list(SETTINGS) == [
         "approach_speed",
         "belt_speed",
+        "carry_clearance",
         "displacement_limit",
         "ee_speed",
         "exactly_one",

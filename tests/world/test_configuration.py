@@ -44,6 +44,7 @@ def started(scene: SceneSpec = SCENE, seed: int = 1) -> Execution:
         (PANDA, "ee_speed", "0.25"),
         (PANDA, "approach_speed", "0.1"),
         (PANDA, "travel_height", "0.4"),
+        (PANDA, "carry_clearance", "0.02"),
         (PANDA, "grip_time", "0.08"),
         (PANDA, "release_time", "1"),
         (PANDA, "position_range", "dense"),

@@ -65,6 +65,23 @@ def test_what_hangs_under_the_cup_hits_a_bin_that_is_too_tall() -> None:
 
 
 @pytest.mark.physics
+@pytest.mark.parametrize("agent", [AGENT, "env:panda"])
+@pytest.mark.parametrize("thing", [BALL, "env:bottle"])
+def test_with_room_below_what_it_carries_an_arm_fills_a_tall_bin(agent: str, thing: str) -> None:
+    room = ConfigSpec(agent, "carry_clearance", "0.02")
+    scene = replace(TALL, objects=(*SCENE.objects, "env:bottle"), agents=(agent,), config=(*TALL.config, room))
+    run = execution([pick_place(thing, BIN_WS, agent)], scene, seed=2)
+    trace = to_the_end(run)
+    assert not trace.remark
+    for clause in (
+        f'"{agent}" does not collide "{BIN_WS}" from "t:pick-start" until "t:end"',
+        f'"{agent}" does not drop "{thing}" from "t:pick-start" until "t:end"',
+        f'"{thing}" is located at "{BIN_WS}" after event "t:place-end"',
+    ):
+        assert judged(run, clause).outcome is Outcome.HOLDS, clause
+
+
+@pytest.mark.physics
 def test_a_cup_whose_lip_is_bent_off_lets_go() -> None:
     """The lip can take 42 N times 12 mm, which is 0.5 N m."""
     run = execution([Call("pick", {"agent": AGENT, "object": CUBE})], BENCH)

@@ -305,9 +305,7 @@ class GripperKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RobotModel:
-    """A robot arm with its tool.
-
-    It is used for an agent of a scene if the name of the agent, or of its set, contains one of ``prefixes``.
+    """A robot arm with its tool, for agents whose name, or that of their set, contains one of ``prefixes``.
 
     - ``mjcf``: a model file in the folder of the catalog file.
     - ``home``: the initial joint positions (rad).
@@ -342,6 +340,8 @@ class RobotModel:
     """Largest speed of the tool while it descends to an object or lowers one, m/s; ``None``: ``tool_speed``."""
     travel_height: float = 0.30
     """Height in the world frame at which the tool travels, m (paper)."""
+    carry_clearance: float = 0.0
+    """Room (m) between a carried object and everything below its path, for which the tool travels higher; 0: none."""
     grip_time: float = 0.16
     """How long the agent checks a grip before the arm moves, s."""
     release_time: float = 0.32

@@ -11,7 +11,16 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel
 
 OF_AGENTS = frozenset(
-    {"approach_speed", "ee_speed", "grip_time", "position_range", "release_time", "seed", "travel_height"}
+    {
+        "approach_speed",
+        "carry_clearance",
+        "ee_speed",
+        "grip_time",
+        "position_range",
+        "release_time",
+        "seed",
+        "travel_height",
+    }
 )
 
 

@@ -83,6 +83,7 @@ _EVERY = (
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("approach_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool as it descends or lowers"),
     Setting("travel_height", "m", "an agent", 0.15, 1.0, "height in the world frame at which the tool travels"),
+    Setting("carry_clearance", "m", "an agent", 0.0, 0.5, "room below a carried object on its way; 0: not considered"),
     Setting("grip_time", "s", "an agent", 0.016, 5.0, "how long a grip is checked before the arm moves"),
     Setting("release_time", "s", "an agent", 0.0, 5.0, "how long the open gripper waits before it retracts"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),

@@ -28,7 +28,7 @@ def outline_of(model: ObjectModel) -> Outline:
 
 def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
     """Return the lowest and the highest corner (m, each of shape (3,)) of the bounding box of shapes, own frame."""
-    half = np.array([_half(shape) for shape in shapes])
+    half = np.array([half_of(shape) for shape in shapes])
     middle = np.array([shape.position for shape in shapes])
     return np.min(middle - half, axis=0), np.max(middle + half, axis=0)
 
@@ -68,7 +68,8 @@ def centred(model: ObjectModel) -> ObjectModel:
     )
 
 
-def _half(shape: Shape) -> Vector:
+def half_of(shape: Shape) -> Vector:
+    """Return half the edges (m) of a shape's bounding box in its own frame."""
     a, b, _ = shape.size
     match shape.kind:
         case ShapeKind.SPHERE:

@@ -19,6 +19,7 @@ from robbdd_tools.world.gripper import Step, gripper_of
 from robbdd_tools.world.motion import ToolPose, plan, present_pose, tool_pose
 from robbdd_tools.world.put_down import Target, has_room, targets
 from robbdd_tools.world.reaching import Approach, Obstruction, approaches, at_travel, joints_at
+from robbdd_tools.world.travel_clearance import height_over
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -88,7 +89,7 @@ class PickPlace:
             raise BehaviourError(f"{self._robot.name} does not hold {name}")
         self._emit("place-start")
         down = self._choose_place(name, workspaces, self._grasp)
-        over, here = self._at_travel(down), present_pose(self._arm, self._joints)
+        over, here = self._carried_to(down, name, self._grasp), present_pose(self._arm, self._joints)
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
         yield from self.move(over)
@@ -181,12 +182,14 @@ class PickPlace:
         clearance = Clearance(simulation, robot, name, simulation.data)
         missed = Obstruction()
         for target in targets(simulation, robot, name, workspace):
-            pose = self._lower_onto(target, grasp, clearance, missed)
+            pose = self._lower_onto(target, name, grasp, clearance, missed)
             if pose is not None:
                 return pose
         raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}{missed}")
 
-    def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance, missed: Obstruction) -> ToolPose | None:
+    def _lower_onto(
+        self, target: Target, name: str, grasp: Grasp, clearance: Clearance, missed: Obstruction
+    ) -> ToolPose | None:
         robot = self._robot
         x, y, surface = target.position
         height = surface + grasp.below + target.gap
@@ -195,7 +198,7 @@ class PickPlace:
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
             try:
-                joints = joints_at(self._arm, self._at_travel(pose), pose)
+                joints = joints_at(self._arm, self._carried_to(pose, name, grasp), pose)
             except Unreachable as error:
                 missed.note(error)
                 return None
@@ -205,6 +208,16 @@ class PickPlace:
             missed.touched[hit.owner] = None
             height += 0.02
         return None
+
+    def _carried_to(self, pose: ToolPose, name: str, grasp: Grasp) -> ToolPose:
+        """Return the pose above a place to which the tool carries an object."""
+        over = self._at_travel(pose)
+        room = self._robot.model.carry_clearance
+        if not room:
+            return over
+        here = present_pose(self._arm, self._joints)
+        needed = height_over(self._simulation, self._robot, name, here, pose) + room + grasp.below
+        return replace(over, height=max(over.height, needed))
 
     def _at_travel(self, pose: ToolPose) -> ToolPose:
         return at_travel(self._robot, pose)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 CONTROLLER = {
     "approach_speed": "approach_speed",
+    "carry_clearance": "carry_clearance",
     "ee_speed": "tool_speed",
     "grip_time": "grip_time",
     "release_time": "release_time",

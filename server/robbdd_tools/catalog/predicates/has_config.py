@@ -48,8 +48,8 @@ HAS_CONFIG = Predicate(
     unit="",
     doc=(
         "The target is set up with this value: position_range (m), height_scale, ee_speed, approach_speed (m/s), "
-        "travel_height (m), grip_time, release_time (s), mass (kg), friction or seed; or it is judged by it: max_speed "
-        "(m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
+        "travel_height, carry_clearance (m), grip_time, release_time (s), mass (kg), friction or seed; or it is judged "
+        "by it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     evaluate=margin,
     set_up=True,
