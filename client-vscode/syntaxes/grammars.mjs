@@ -84,6 +84,9 @@ const predicates = phrases(
   "presses",
   "with less than",
   "does not collide",
+  "stays within",
+  "keeps its joints",
+  "from their limits",
 );
 
 const quantity = {
@@ -91,9 +94,9 @@ const quantity = {
   captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
 };
 
-// The last word of the phrase is behind a quantity or a variable.
+// The last word of the phrase is behind a quantity, a variable or an element.
 const distance = {
-  begin: String.raw`(?<![\p{L}\p{N}_-])(is\s+(?:nearer|farther)\s+than)(?![\p{L}\p{N}_-])`,
+  begin: String.raw`(?<![\p{L}\p{N}_-])(is\s+(?:nearer|farther)\s+than|keeps\s+a\s+distance\s+of|of\s+the\s+line\s+from)(?![\p{L}\p{N}_-])`,
   beginCaptures: { 1: { name: `${PHRASE}.predicate.robbdd` } },
   end: String.raw`(?<![\p{L}\p{N}_.-])(to|from)(?![\p{L}\p{N}_-])|(?=[,)])`,
   endCaptures: { 1: { name: `${PHRASE}.predicate.robbdd` } },

@@ -57,9 +57,10 @@ def test_phrase_and_sentence_name_each_slot_once(word: Predicate | Behaviour) ->
 
 
 @every_predicate
-def test_a_predicate_reads_back_from_its_own_sentence(predicate: Predicate) -> None:
+@pytest.mark.parametrize("time", ['before event "t:e"', 'from "t:a" until "t:e"'])
+def test_a_predicate_reads_back_from_its_own_sentence(predicate: Predicate, time: str) -> None:
     words = {slot.name: f"t:{slot.name}" for slot in predicate.slots}
-    found = read_clause(predicate.sentence.format(**words) + ' before event "t:e"')
+    found = read_clause(f"{predicate.sentence.format(**words)} {time}")
     assert isinstance(found, Fluent)
     assert (found.predicate, found.arguments) == (predicate, words)
 
@@ -83,7 +84,7 @@ def test_a_behaviour_has_a_duration(behaviour: Behaviour) -> None:
 @every_predicate
 def test_a_predicate_has_a_type_and_a_unit_of_its_margin(predicate: Predicate) -> None:
     assert CURIE.fullmatch(predicate.rdf_type)
-    assert predicate.unit in ("", "m", "m/s", "s", "rad", "N")
+    assert predicate.unit in ("", "m", "m/s", "s", "rad", "N", "%")
     re.compile(fluent_pattern(predicate))
 
 

@@ -26,10 +26,16 @@ def test_limits_are_kept_or_exceeded_in_their_units(
     document: Any = json.loads(Path("run.json").read_text(encoding="utf-8"))
     wide, narrow = ({one["name"]: one for one in scenario["clauses"]} for scenario in document["scenarios"])
     assert {one["verdict"] for one in wide.values()} == {"holds"}
-    assert {name for name, one in narrow.items() if one["verdict"] != "holds"} == {"slow-near-bin", "gentle"}
+    assert {name for name, one in narrow.items() if one["verdict"] != "holds"} == {
+        "slow-near-bin",
+        "gentle",
+        "straight",
+    }
     assert [wide[name]["unit"] for name in ("slow-near-bin", "far-from-other", "level")] == ["m/s", "m", "deg"]
     assert 0 < wide["level"]["robustness"] < 15
     assert (wide["gentle"]["unit"], wide["lands"]["unit"], wide["rests"]["unit"]) == ("N", "N", "m/s")
+    assert [wide[name]["unit"] for name in ("clear", "straight", "easy-joints")] == ["cm", "cm", "%"]
+    assert 0 < wide["easy-joints"]["robustness"] < 50
     assert narrow["gentle"]["robustness"] < -10
     assert main(["gherkin", "limits.bdd", "-o", "out"]) == 0
     (feature,) = Path("out", "features").glob("*.feature")

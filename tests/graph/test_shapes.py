@@ -38,6 +38,7 @@ DAMAGE: dict[str, list[str]] = {
     "angle-value": ["- t:level rbw:limit", "+ t:level rbw:limit t:var-robot"],
     "force-value": ["+ t:at a rbw:PressesWithLessThanPredicate", "+ t:at rbw:limit t:var-robot"],
     "length-value": ["- t:apart rbw:distance", "+ t:apart rbw:distance t:var-robot"],
+    "ratio-value": ["+ t:at a rbw:KeepsJointsFromLimitsPredicate", "+ t:at rbw:share t:var-robot"],
     "speed-value": ["- t:slow rbw:limit", "+ t:slow rbw:limit t:var-robot"],
     "time-value": ["- t:fast rbw:limit", "+ t:fast rbw:limit t:var-robot"],
     "agent-members": ["- lab:bench_scene-scene-has-agn agn:has-agent"],

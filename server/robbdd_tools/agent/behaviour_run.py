@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
 from robbdd_tools.catalog.coordination import emitter
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
@@ -20,7 +21,6 @@ from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationErro
 from robbdd_tools.world.extent import outline_of
 from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.pick_place import PickPlace
-from robbdd_tools.world.reaching import ReachSampler
 from robbdd_tools.world.scene import contents_of
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
@@ -125,7 +125,7 @@ class BehaviourRun:
         self.simulation = Simulation(world)
         carriers = {carrier for name in self._timing.touching for carrier, _ in world.cast.regions.get(name, ())}
         self.simulation.watch_touches(self._timing.touching | carriers)
-        self.reaches = ReachSampler(self.simulation)
+        self.quantities = OnDemandQuantities(self.simulation)
         self._controllers: dict[str, PickPlace] = {}
         self.stamps: list[EventStamp] = []
         self.observers: list[Callable[[], None]] = []

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.judging.margin_curves import fluent_margins, unit_of
-from robbdd_tools.judging.quantities import fluents_with_quantity
 from robbdd_tools.judging.scenario_clauses import iteration_of
 from robbdd_tools.monitor.curve import Curve, with_points
 from robbdd_tools.monitor.judge import WindowEvidence
@@ -18,7 +18,6 @@ from robbdd_tools.monitor.time import Window
 from robbdd_tools.monitor.windows_so_far import WindowSoFar, windows_so_far
 from robbdd_tools.protocol.clauses import Fluent, Junction, leaves_of
 from robbdd_tools.protocol.pauses import Hit, Moment, PartState
-from robbdd_tools.world.reaching import ReachSampler
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.execution import Execution
@@ -78,7 +77,7 @@ class ClauseWatch:
         self._watched = watched
         self._execution = execution
         # Measurements of the execution's own sampler would appear in its trace.
-        self._reaches = ReachSampler(execution.simulation)
+        self._quantities = OnDemandQuantities(execution.simulation)
         self._known = {clause.line: clause for clause in spec.clauses}
         self._parts = [
             part for line, clause in watched.clauses.items() for part in _parts(line, clause, self._known.get(line))
@@ -204,10 +203,8 @@ class ClauseWatch:
     def _measured(self, fluent: Fluent, rows: Window, trace: Trace) -> Trace:
         """Return a trace with the quantities that are measured on demand. Raises ``KeyError``."""
         complete = self._execution.complete(trace)
-        pairs = [(one["agent"], one["object"]) for _, one in fluents_with_quantity(fluent, "reach")]
-        for agent, name in pairs:
-            self._reaches.sample(agent, name, range(rows.first, rows.last + 1))
-        return replace(complete, reaches=self._reaches.record(len(trace.times))) if pairs else complete
+        self._quantities.measure(fluent, trace, range(rows.first, rows.last + 1))
+        return self._quantities.added_to(complete)
 
     def _intervals(self) -> dict[int, tuple[float | None, float | None]]:
         """Return when the behaviours and events of the When clauses begin and end (s), as far as known."""

@@ -73,6 +73,8 @@ def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
         yield _first(one.impulses[pair], other.impulses[pair], f"impulse between {' and '.join(pair)}", ())
     for pair in one.reaches.keys() & other.reaches.keys():
         yield _first(one.reaches[pair], other.reaches[pair], f"reach of {' for '.join(pair)}", ())
+    for pair in one.gaps.keys() & other.gaps.keys():
+        yield _first(one.gaps[pair], other.gaps[pair], f"gap between {' and '.join(pair)}", ())
 
 
 def _first(

@@ -8,10 +8,9 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_run import BehaviourRun, Call, Timing
-from robbdd_tools.judging.quantities import fluents_with_quantity
-from robbdd_tools.monitor.time import Window, window
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.joint_clearance import joint_clearances
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -122,12 +121,7 @@ class Execution:
     def measured(self, clause: Clause, trace: Trace) -> Trace:
         """Return a trace with the configuration and the costly quantities that are needed to judge a clause."""
         began = perf_counter()
-        for fluent, arguments in fluents_with_quantity(clause, "reach"):
-            agent, name = arguments["agent"], arguments["object"]
-            selected = window(fluent.time, trace)
-            known = agent in self.simulation.robots and name in self.simulation.world.cast.objects
-            if known and isinstance(selected, Window):
-                self.course.reaches.sample(agent, name, range(selected.first, selected.last + 1))
+        self.course.quantities.measure(clause, trace)
         self.course.wall += perf_counter() - began
         return self.complete(trace)
 
@@ -136,8 +130,8 @@ class Execution:
         size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
         touches = self.simulation.touches
         return replace(
-            trace,
-            reaches=self.course.reaches.record(size),
+            self.course.quantities.added_to(trace),
+            joint_clearances=joint_clearances(self.simulation.robots.values(), self.simulation.recorder.states[:size]),
             settings=self.course.settings,
             forces=forces.peaks(size),
             impulses=forces.impulses(size),

@@ -81,7 +81,8 @@ def _state(path: Path) -> tuple[int, int]:
 def _size(evidence: Evidence) -> int:
     """Return the bytes of the large arrays of a trace."""
     trace = evidence.trace
-    series = (*trace.grips.values(), *trace.forces.values(), *trace.impulses.values(), *trace.reaches.values())
+    sampled = (trace.grips, trace.forces, trace.impulses, trace.reaches, trace.gaps, trace.joint_clearances)
+    series = (array for record in sampled for array in record.values())
     return sum(array.nbytes for array in (trace.times, trace.positions, trace.orientations, *series))
 
 

@@ -128,22 +128,23 @@ class Evidence(Protocol):
         ...
 
     def reach(self, agent: str, name: str) -> FloatArray:
-        """Return the joint-limit distance (rad) of the agent's best clear grasp of the object, shape (n,).
-
-        It is -π where there is no clear grasp.
-        """
+        """Joint-limit distance (rad) of the agent's best clear grasp of the object, -π without one, shape (n,)."""
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Return the largest contact force (N) of an element since the previous sample, shape (n,).
-
-        This is the force between the element and the agent or the object that the agent grips. The weight of the
-        gripped object is not counted.
-        """
+        """Largest contact force (N) with an agent, or with what it grips less its weight, since the previous sample."""
         ...
 
     def touch(self, one: str, other: str) -> FloatArray:
         """Largest contact force (N) since the previous sample, shape (n,), without what an agent grips."""
+        ...
+
+    def gap(self, one: str, other: str) -> FloatArray:
+        """Return the distance (m) of the surfaces of two elements, shape (n,); negative where they overlap."""
+        ...
+
+    def joint_clearance(self, agent: str) -> FloatArray:
+        """Return how far the joint that is nearest to a limit is from it, as a share of its range, shape (n,)."""
         ...
 
     def is_immovable(self, name: str) -> bool:
@@ -172,7 +173,6 @@ Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
 
 UnitChoice = Callable[[Evidence, Arguments], str]
 """Unit of a predicate's margin, if it depends on configuration or on the unit of a quantity in the clause."""
-
 
 DurationMargin = Callable[[float, Arguments], float]
 """Signed margin of a predicate about a duration (s), in the predicate's unit."""

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Evidence, FloatArray, Outline, Region, Vector
 
 
+GAP = "gap"
+"""The quantity that the predicate about gaps needs: distances of surfaces, which are measured on demand."""
 CONTACT = 1e-3
 """Depth (m) to which an object at rest may penetrate its support: the simulation keeps settled contacts below it."""
 
@@ -171,6 +173,27 @@ def distance_between(evidence: Evidence, one: str, other: str) -> FloatArray:
 
     pairs = [(a, b) for a in carriers_of(evidence, one) for b in carriers_of(evidence, other)]
     return np.min([np.linalg.norm(evidence.position(a) - evidence.position(b), axis=1) for a, b in pairs], axis=0)
+
+
+def only_position(evidence: Evidence, target: str) -> FloatArray:
+    """Return the position of an element, or of the object that carries a workspace, m, shape (n, 3).
+
+    Raises ``KeyError`` if several objects carry the workspace: none of them is its place.
+    """
+    carriers = list(dict.fromkeys(carriers_of(evidence, target)))
+    if len(carriers) != 1:
+        raise KeyError(f"one place of {target}")
+    return evidence.position(carriers[0])
+
+
+def distance_from_segment(point: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return the distance (m) of points from straight lines that end at ``start`` and ``end``, all (n, 3), as (n,)."""
+    import numpy as np
+
+    along, offset = end - start, point - start
+    square = np.sum(along * along, axis=1)
+    share = np.clip(np.sum(offset * along, axis=1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    return np.linalg.norm(offset - share[:, None] * along, axis=1)
 
 
 def path_length(positions: FloatArray) -> FloatArray:

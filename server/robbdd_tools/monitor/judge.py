@@ -154,6 +154,20 @@ class WindowEvidence:
                 return np.zeros(self.window.last + 1 - self.window.first)
         raise KeyError(f"contact forces between {one} and {other}")
 
+    def gap(self, one: str, other: str) -> FloatArray:
+        """Return the distance of two surfaces, m, shape (n,), NaN where it was not measured. Raises ``KeyError``."""
+        gaps = self.trace.gaps
+        known = gaps.get((one, other), gaps.get((other, one)))
+        if known is None:
+            raise KeyError(f"distance between the surfaces of {one} and {other}")
+        return known[self._rows]
+
+    def joint_clearance(self, agent: str) -> FloatArray:
+        """Return the smallest share of a joint's range to its nearest limit, shape (n,). Raises ``KeyError``."""
+        if agent not in self.trace.joint_clearances:
+            raise KeyError(f"joint limits of {agent}")
+        return self.trace.joint_clearances[agent][self._rows]
+
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
         return name in self.trace.immovable

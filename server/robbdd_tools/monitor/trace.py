@@ -65,6 +65,9 @@ class Trace:
     - ``unreached``: the reason if the scenario is a part of a behaviour tree that never began; then it is not judged.
     - ``contents``: maps a workspace to the workspaces inside it, at any depth.
     - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
+    - ``gaps``: maps two elements to the distance (m) of their surfaces (n,), NaN where it was not measured.
+    - ``joint_clearances``: maps an agent to the smallest distance of its joints from their limits, each as a share of
+      the joint's range (n,). An agent without limited joints is missing.
     - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
     - ``pending``: the events that could occur again if the execution continued.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
@@ -97,6 +100,8 @@ class Trace:
     touches: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     touch_watched: tuple[str, ...] = ()
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    gaps: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
+    joint_clearances: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
 
     @property
     def end(self) -> float:

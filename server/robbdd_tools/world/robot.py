@@ -31,6 +31,12 @@ class Robot:
         self.speeds = np.array([joint.dofadr[0] for joint in joints])
         on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
         driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
+        self.limited = np.array([joint.qposadr[0] for joint in joints if model.jnt_limited[joint.id]], dtype=int)
+        """Indices of the positions of the arm's joints that have limits, shape (k,)."""
+        self.limits: FloatArray = np.array(
+            [model.jnt_range[joint.id] for joint in joints if model.jnt_limited[joint.id]]
+        ).reshape(-1, 2)
+        """Their lower and upper limits (rad, or m of a sliding joint), shape (k, 2)."""
         self.motors = np.array([driven[joint.id] for joint in joints])
         self.targets = model.actuator_actadr[self.motors]
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
