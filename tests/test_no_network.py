@@ -62,6 +62,8 @@ COMMANDS = (
     "replay latest --store runs --force",
     "compare latest latest --store runs",
     "report latest -o report.html --store runs",
+    "study run one.study --store studies",
+    "study status one.study --store studies",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",
@@ -104,6 +106,8 @@ def folder(tmp_path: Path, contacts: tuple[str, list[str]]) -> Path:
     address, _ = contacts
     models = tmp_path / "models"
     shutil.copytree(EXAMPLES / "pickplace", models)
+    study = 'import "pickplace.bdd" Study one { first: 1 }'
+    (models / "one.study").write_text(study, encoding="utf-8")
     texts = {
         "robbdd.toml": 'shapes = ["shapes.ttl", "service.ttl"]\ncontext-hosts = ["127.0.0.1"]\n',
         "shapes.ttl": SHAPES,

@@ -37,6 +37,8 @@ COMMANDS = (
     "replay latest --store out/runs",
     "compare latest latest --store out/runs",
     "report latest -o out/report.html --store out/runs",
+    "study run one.study --store out/studies",
+    "study export one.study -o out/rows.csv --store out/studies",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
     "new out/bench",
@@ -48,6 +50,7 @@ STARTING = (
     *(command for command in COMMANDS if command.split()[0] in {"gherkin", "run", "judge"}),
 )
 """Commands that start processes, one of each kind. ``PYTHONPATH`` goes before it is known which command is executed."""
+A_STUDY = 'import "pickplace.bddx" Study one { first: 1 }'
 AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."
 FINDINGS = 1
 
@@ -102,6 +105,7 @@ def test_no_command_imports_a_planted_module(
 ) -> None:
     hostile = HostileFolder(tmp_path)
     (hostile.models / "event.ttl").write_text(AN_EVENT, encoding="utf-8")
+    (hostile.models / "one.study").write_text(A_STUDY, encoding="utf-8")
     start = hostile.models if inside else hostile.root
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in commands:

@@ -31,6 +31,7 @@ from robbdd_tools.commands.run_arguments import (
     resume_options,
     run_options,
 )
+from robbdd_tools.commands.study_arguments import add_study
 
 MORE = "further parts of a model that is a graph (.ttl, .json, .jsonld)"
 SHELLS = ("bash", "zsh", "tcsh")
@@ -132,6 +133,7 @@ def argument_parser() -> argparse.ArgumentParser:
     run.set_defaults(command=_run)
 
     stored = add_commands_of_runs(commands)
+    studies = add_study(commands.add_parser("study", help="execute the combinations of a .study file many times"))
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
@@ -172,7 +174,7 @@ def argument_parser() -> argparse.ArgumentParser:
     completion = commands.add_parser("completion", help="print a script that completes robbdd's arguments in a shell")
     completion.add_argument("shell", choices=SHELLS)
     completion.set_defaults(command=_completion)
-    _allow_refusal(run, *stored, view, dap)
+    _allow_refusal(run, *stored, *studies, view, dap)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 

@@ -96,3 +96,12 @@ def test_what_does_without_code_of_users_is_run(folder: Path) -> None:
     assert robbdd(folder, "run pickplace.bdd --first 1 --no-store --no-user-code").returncode in (0, 1)
     assert robbdd(folder, "view pickplace.bddx -o scene.png --no-user-code").returncode in (0, 2)
     assert not (folder.parent / "ran").exists()
+
+
+def test_a_study_executes_no_code_of_users(folder: Path) -> None:
+    study = 'import "pickplace.bddx" Study one { first: 1 }'
+    (folder / "one.study").write_text(study, encoding="utf-8")
+    done = robbdd(folder, "study run one.study --no-user-code")
+    assert done.returncode == 2
+    assert "judges with the Python code policies:apart" in done.stderr
+    assert not (folder.parent / "ran").exists()

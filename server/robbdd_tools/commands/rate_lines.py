@@ -26,16 +26,23 @@ def rate_lines(scenarios: Sequence[ScenarioResult]) -> list[str]:
     if not scenarios:
         return []
     held = sum(one.verdict is Outcome.HOLDS for one in scenarios)
-    lines = [_line(LevelRate("all scenarios", held, len(scenarios)))]
+    lines = [level_line(LevelRate("all scenarios", held, len(scenarios)))]
     for levels in factor_rates(scenarios):
-        shown = levels if len(levels) <= MAX_LEVELS else sorted(levels, key=lambda one: one.share)[:MAX_LEVELS]
-        lines += [f"  {_line(level)}" for level in shown]
-        if len(shown) < len(levels):
-            lines.append(f"  … and {len(levels) - len(shown)} more levels with rates that are not lower")
+        lines += level_lines(levels)
     return lines
 
 
-def _line(level: LevelRate) -> str:
+def level_lines(levels: Sequence[LevelRate]) -> list[str]:
+    """Return the rates of the levels of one factor; of more than ``MAX_LEVELS`` levels, those with the lowest rates."""
+    shown = levels if len(levels) <= MAX_LEVELS else sorted(levels, key=lambda one: one.share)[:MAX_LEVELS]
+    lines = [f"  {level_line(level)}" for level in shown]
+    if len(shown) < len(levels):
+        lines.append(f"  … and {len(levels) - len(shown)} more levels with rates that are not lower")
+    return lines
+
+
+def level_line(level: LevelRate) -> str:
+    """Return the rate of one level as a line."""
     found = level.interval()
     interval = "" if found is None else f"; 95 % interval {100 * found.low:.1f} % to {100 * found.high:.1f} %"
     share = f"{100 * level.share:.1f} %"

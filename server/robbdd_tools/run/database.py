@@ -25,7 +25,8 @@ BUSY = 30.0
 _DAMAGE = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 _UNWRITABLE = {sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY}
 
-MIGRATIONS: tuple[tuple[str, ...], ...] = (
+Migrations = tuple[tuple[str, ...], ...]
+MIGRATIONS: Migrations = (
     (
         # state: running, finished, stopped (at the first failure), interrupted, failed. A run that died is 'running'
         # although nobody holds its lock. Host, start, end and jobs may differ between equal runs; nothing else does.
@@ -147,11 +148,13 @@ def transaction(connection: sqlite3.Connection) -> Generator[None]:
         raise
 
 
-def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
+def open_database(path: Path, *, durable: bool = True, migrations: Migrations | None = None) -> sqlite3.Connection:
     """Open a database for writing, and create or migrate it as needed. Raises ``DatabaseProblem``.
 
     The caller manages transactions (see ``transaction``). If ``durable`` is false, commits do not wait for the disk.
+    ``migrations`` define the schema; by default, they are those of runs.
     """
+    migrations = MIGRATIONS if migrations is None else migrations
     if path.exists() and not path.is_file():
         raise DatabaseProblem(path, "is not a regular file")
     with explained(path):
@@ -159,11 +162,11 @@ def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
         try:
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.execute("PRAGMA foreign_keys = ON")
-            version = _version(connection, path)
+            version = _version(connection, path, migrations)
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute(f"PRAGMA synchronous = {'FULL' if durable else 'OFF'}")
-            if version < len(MIGRATIONS):
-                _migrate(connection, path)
+            if version < len(migrations):
+                _migrate(connection, path, migrations)
         except BaseException:
             connection.close()
             raise
@@ -276,28 +279,29 @@ def _in_memory(connection: sqlite3.Connection) -> sqlite3.Connection:
     return memory
 
 
-def _version(connection: sqlite3.Connection, path: Path) -> int:
+def _version(connection: sqlite3.Connection, path: Path, migrations: Migrations | None = None) -> int:
     """Return the schema version of a database, or 0 if it is empty. Raises ``DatabaseProblem`` if it is unusable."""
+    known = len(MIGRATIONS if migrations is None else migrations)
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     kinds = {kind for (kind,) in connection.execute("SELECT DISTINCT type FROM sqlite_master")}
     # A view or a trigger would run code of the file's author on every access.
     if not kinds <= {"table", "index"} or (kinds and not version):
         raise DatabaseProblem(path, "is a database of another program: move it away")
-    if version > len(MIGRATIONS):
-        known = len(MIGRATIONS)
+    if version > known:
         raise DatabaseProblem(
             path, f"was written by a newer version of RobBDD (schema {version}; this one knows {known}): update RobBDD"
         )
     return int(version)
 
 
-def _migrate(connection: sqlite3.Connection, path: Path) -> None:
+def _migrate(connection: sqlite3.Connection, path: Path, migrations: Migrations | None = None) -> None:
+    migrations = MIGRATIONS if migrations is None else migrations
     with transaction(connection):
         # Another process may have migrated it in the meantime.
-        for statements in MIGRATIONS[_version(connection, path) :]:
+        for statements in migrations[_version(connection, path, migrations) :]:
             for statement in statements:
                 connection.execute(statement)
-        connection.execute(f"PRAGMA user_version = {len(MIGRATIONS)}")
+        connection.execute(f"PRAGMA user_version = {len(migrations)}")
 
 
 def _problem(path: Path, error: sqlite3.Error) -> DatabaseProblem:

@@ -1,0 +1,226 @@
+"""Load a ``.study`` file and the models that it imports, and find everything that would prevent its execution."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.files import load_bytes, path_to_uri, read_text
+from robbdd_tools.campaign.study_text import Factor, StudyText, Word, read_study
+from robbdd_tools.run.prepare import DEFAULT_SEED
+from robbdd_tools.run.run_policy import TIMEOUT
+from robbdd_tools.workbench.diagnostics import Finding, Place
+from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, load_all, read_instances
+from robbdd_tools.workbench.plan import Plan, Selection
+
+SUFFIX = ".study"
+BATCH = 500
+"""Default number of executions after which results are moved to the study's store."""
+MOST_CELLS = 1000
+"""Limit of the combinations of levels."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One combination of the levels of a study's factors: pairs of a factor and its level, in words.
+
+    Scenarios and their repetitions are executed in each cell with the same seeds.
+    """
+
+    levels: Mapping[str, str]
+    plan: Plan
+
+    @property
+    def words(self) -> str:
+        """The levels in words; empty without factors."""
+        return ", ".join(f"{factor}={level}" for factor, level in self.levels.items())
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as it was loaded. ``findings`` has its errors and those of its models."""
+
+    path: Path
+    document: Document
+    content: StudyText
+    findings: tuple[Finding, ...]
+    model: Model | None
+    cells: tuple[Cell, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of the study."""
+        return self.content.name
+
+    @property
+    def repeat(self) -> int | None:
+        """The number of repetitions of each scenario; ``None`` takes it from the executions of the model."""
+        return self.content.whole("repeat")
+
+    @property
+    def batch(self) -> int:
+        """The number of executions that are executed before their results are moved to the study's store."""
+        return self.content.whole("batch") or BATCH
+
+    @property
+    def timeout(self) -> float:
+        """The limit of wall time for one scenario in s; 0 for no limit."""
+        return self.content.numbers.get("timeout", TIMEOUT)
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of everything that defines the executions: settings, graphs of models, scene instances.
+
+        Comments and layout do not count. Raises ``OSError``.
+        """
+        content = self.content
+        scenes = [word for factor in content.factors if factor.implementation is None for word in factor.levels]
+        words = [
+            repr([word.text for word in content.scenarios]),
+            "" if content.where is None else content.where.text,
+            repr(sorted(content.numbers.items())),
+            *(cell.words for cell in self.cells),
+            *(cell.plan.digest for cell in self.cells),
+            *(hashlib.sha256(load_bytes(self.path.parent / word.text)).hexdigest() for word in scenes),
+        ]
+        return hashlib.sha256("\n".join(words).encode()).hexdigest()
+
+
+def load_study(path: Path) -> Study:
+    """Load a study. Its errors are findings. Raises ``NotAModel`` if there is no such file."""
+    if path.suffix != SUFFIX:
+        raise NotAModel(f"{path} is not a {SUFFIX} file")
+    text = read_text(path)
+    if not isinstance(text, str):
+        raise NotAModel(f"{path} cannot be read: {text.reason}")
+    document = Document(path_to_uri(path), 0, text)
+    content, faults = read_study(document)
+    loader = _Loader(path, document, content)
+    if faults:
+        return Study(path, document, content, tuple(map(loader.at, faults)), None, ())
+    cells = tuple(loader.cells())
+    return Study(path, document, content, tuple(loader.findings), loader.model, () if loader.findings else cells)
+
+
+class _Loader:
+    def __init__(self, path: Path, document: Document, content: StudyText) -> None:
+        self._folder = path.parent
+        self._document = document
+        self._content = content
+        self.findings: list[Finding] = []
+        self.model: Model | None = None
+
+    def cells(self) -> Iterator[Cell]:
+        """Yield the cells. Errors become findings, and then the cells are incomplete."""
+        self.model = self._model()
+        if self.model is None:
+            return
+        selection = Selection(
+            [word.text for word in self._content.scenarios],
+            self._content.where and self._content.where.text,
+            self._content.whole("first"),
+            self._content.whole("sample"),
+            self._content.whole("pairwise"),
+            self._content.whole("seed"),
+            default_seed=DEFAULT_SEED,
+        )
+        if self._plan(replace(selection, names=()), self._content.where, "where") is None:
+            if self._content.where is None:
+                return
+            selection = replace(selection, where=None)
+        for word in self._content.scenarios:
+            self._plan(replace(selection, names=[word.text]), word, "scenarios")
+        combinations = self._combinations(selection)
+        if not self.findings:
+            for levels, chosen in combinations:
+                plan = self._plan(chosen, self._content.factors[0].levels[0] if levels else None, "factor")
+                if plan is not None:
+                    yield Cell(levels, plan)
+
+    def at(self, fault: Diagnostic) -> Finding:
+        """Return a diagnostic with line and column."""
+        return Finding(self._place(fault.span), fault.severity, fault.code, fault.message)
+
+    def _model(self) -> Model | None:
+        if not self._content.imports:
+            self._report(Span(0, 0), 'a study imports its models: begin with import "MODEL.bdd"')
+            return None
+        paths = [self._folder / word.text for word in self._content.imports]
+        for word, path in zip(self._content.imports, paths, strict=True):
+            if not path.is_file():
+                self._report(word.span, f"there is no file {word.text}")
+        if self.findings:
+            return None
+        try:
+            model = load_all(paths)
+            _ = model.runnable
+        except ModelErrors as error:
+            self.findings += error.findings
+            return None
+        except RobbddError as error:
+            self._report(self._content.imports[0].span, str(error))
+            return None
+        return model
+
+    def _combinations(self, selection: Selection) -> Sequence[tuple[Mapping[str, str], Selection]]:
+        factors = self._content.factors
+        number = 1
+        for factor in factors:
+            number *= len(factor.levels)
+        if number > MOST_CELLS:
+            self._report(factors[0].levels[0].span, f"{number} combinations of levels are more than {MOST_CELLS}")
+            return []
+        levels = [
+            [(factor, level) for level in factor.levels if self._fits(selection, factor, level)] for factor in factors
+        ]
+        return [(_levels(cell), self._selected(selection, cell)) for cell in product(*levels)]
+
+    def _fits(self, selection: Selection, factor: Factor, level: Word) -> bool:
+        """Check one level alone, so that a finding is at its place."""
+        if factor.implementation is None and not (self._folder / level.text).is_file():
+            self._report(level.span, f"there is no file {level.text}")
+            return False
+        try:
+            chosen = self._selected(selection, [(factor, level)])
+        except RobbddError as error:
+            self._report(level.span, str(error))
+            return False
+        return self._plan(chosen, level, "factor") is not None
+
+    def _selected(self, selection: Selection, cell: Sequence[tuple[Factor, Word]]) -> Selection:
+        scenes = [self._folder / level.text for factor, level in cell if factor.implementation is None]
+        substitutions = {
+            factor.implementation.text: level.text for factor, level in cell if factor.implementation is not None
+        }
+        return replace(selection, substitutions=substitutions, instances=read_instances(scenes))
+
+    def _plan(self, selection: Selection, word: Word | None, setting: str) -> Plan | None:
+        assert self.model is not None
+        try:
+            return Plan.of(self.model, selection)
+        except RobbddError as error:
+            place = self._content.places.get(setting, Span(0, 0)) if word is None else word.span
+            self._report(place, str(error).replace("--where", "where", 1))
+            return None
+
+    def _report(self, span: Span, message: str) -> None:
+        found = self.at(Diagnostic(self._document.uri, span, Severity.ERROR, "study", message))
+        if found not in self.findings:
+            self.findings.append(found)
+
+    def _place(self, span: Span) -> Place:
+        start, end = self._document.position(span.start), self._document.position(span.end)
+        return Place(self._document.uri, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _levels(cell: Sequence[tuple[Factor, Word]]) -> Mapping[str, str]:
+    return {
+        "scene" if factor.implementation is None else factor.implementation.text: level.text for factor, level in cell
+    }

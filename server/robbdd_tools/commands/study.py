@@ -1,0 +1,181 @@
+"""``robbdd study``: execute a study, continue it, and show its results."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.processes import end_requests
+from robbdd_tools.base.writing import replacing
+from robbdd_tools.campaign.study_file import Study, load_study
+from robbdd_tools.campaign.study_rates import study_rates
+from robbdd_tools.campaign.study_run import StudyRun, open_batch, open_results, remove_results, study_folder
+from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
+from robbdd_tools.commands.models import print_findings
+from robbdd_tools.commands.output import fail, print_line, print_note
+from robbdd_tools.commands.rate_lines import level_line, level_lines
+from robbdd_tools.run.report import margin
+from robbdd_tools.run.run_policy import Policy
+from robbdd_tools.run.store import store_beside
+from robbdd_tools.run.study_store import COLUMNS
+from robbdd_tools.workbench.time_estimate import TimeEstimate, estimate
+
+if TYPE_CHECKING:
+    from robbdd_tools.campaign.study_run import StudyProgress
+    from robbdd_tools.run.study_store import StudyStore
+
+PAUSE = 10.0
+"""Seconds between two lines of progress."""
+INTERRUPTED = "the study was interrupted"
+
+
+@dataclass(frozen=True, slots=True)
+class StudyOptions:
+    """The options of ``robbdd study run`` and, with ``resumed``, of ``robbdd study resume``.
+
+    ``store`` is the folder of all studies. With ``restart``, earlier results are removed.
+    """
+
+    path: Path
+    store: Path | None = None
+    jobs: int | None = None
+    resumed: bool = False
+    restart: bool = False
+
+
+def run_study(options: StudyOptions) -> int:
+    """Execute the open executions of a study.
+
+    Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end.
+    """
+    return _explained(lambda: _run_study(options))
+
+
+def print_status(path: Path, store: Path | None) -> int:
+    """Print how many executions are finished, and whether a process executes the study."""
+    return _explained(lambda: _print_status(study_folder(path, store)))
+
+
+def print_rates(path: Path, store: Path | None) -> int:
+    """Print the pass rates of the levels of each factor, then those of each clause."""
+    return _explained(lambda: _print_rates(study_folder(path, store)))
+
+
+def export_rows(path: Path, output: Path, store: Path | None) -> int:
+    """Write one row for each clause of each execution as CSV."""
+    return _explained(lambda: _export_rows(study_folder(path, store), output))
+
+
+def _explained(work: Callable[[], int]) -> int:
+    try:
+        return work()
+    except RobbddError as error:
+        return fail(str(error))
+    except OSError as error:
+        return fail(f"{error.filename}: {error.strerror or error}" if error.filename else str(error))
+
+
+def _run_study(options: StudyOptions) -> int:
+    study = load_study(options.path)
+    print_findings((one for one in study.findings if one.is_error), print_note)
+    if any(one.is_error for one in study.findings):
+        return FAILED
+    folder = study_folder(options.path, options.store)
+    if options.restart:
+        remove_results(folder)
+    policy = Policy.of(jobs=options.jobs)
+    with StudyRun(study, folder, policy, resumed=options.resumed) as run:
+        print_note(f"robbdd: {_announcement(study, run, policy)}")
+        ended_by = _follow(run)
+        _print_results(run.store)
+        if ended_by or run.ending:
+            print_note(f"robbdd: {run.ending}: continue with `robbdd study resume {options.path}`")
+            return signal_code(ended_by) if ended_by else FAILED
+        return OK if all(total == holding for _, total, holding in run.store.outcomes()) else FINDINGS
+
+
+def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:
+    cells = f" in {len(study.cells)} combinations of levels" if len(study.cells) > 1 else ""
+    specs = chain.from_iterable(cell.plan.specs(repeat=study.repeat) for cell in study.cells)
+    expected = estimate(specs, store_beside(study.path).database, policy.jobs)
+    basis = f" ({expected.basis})" if expected.seconds is not None else ""
+    return f"{study.name}: {expected}{cells}, {len(run.batches)} batches{basis}"
+
+
+def _follow(run: StudyRun) -> int:
+    """Execute the study and print its progress. Return the number of the signal that ended it, or 0."""
+    ended_by = 0
+
+    def cancel(number: int) -> None:
+        nonlocal ended_by
+        ended_by = number
+        run.cancel(INTERRUPTED)
+
+    shown = monotonic()
+    with end_requests(cancel):
+        for progress in run.progress():
+            if monotonic() - shown >= PAUSE:
+                shown = monotonic()
+                print_note(_progress_words(progress))
+    return ended_by
+
+
+def _progress_words(progress: StudyProgress) -> str:
+    counted = f"{progress.finished:,} of {progress.total:,} executions"
+    if progress.left is None:
+        return counted
+    left = TimeEstimate(progress.total - progress.finished, progress.left, 0).duration
+    return f"{counted}, {progress.rate:.1f} per second, about {left} left"
+
+
+def _print_results(store: StudyStore) -> None:
+    counts = store.counts()
+    if not counts:
+        return
+    (overall,), *factors = study_rates(counts)
+    print_line(level_line(overall))
+    for levels in factors:
+        for line in level_lines(levels):
+            print_line(line)
+    print_line("")
+    for clause in store.clauses():
+        total = clause.holds + clause.violated + clause.unknown
+        shown = margin(clause.least, clause.unit)
+        least = f"; smallest margin {shown}" if shown else ""
+        others = f"{clause.violated} violated, {clause.unknown} unknown"
+        print_line(f"{clause.name}: {clause.holds} of {total} hold, {others}{least}")
+
+
+def _print_status(folder: Path) -> int:
+    with open_results(folder) as store:
+        counted = list(store.outcomes())
+        open_ones, is_live = open_batch(folder)
+        finished = sum(total for _, total, _ in counted) + open_ones
+        state = "in progress" if is_live else "not in progress"
+        name, total = store.fact("name"), int(store.fact("total") or 0)
+        print_line(f"{name}: {finished:,} of {total:,} executions, {state}")
+    return OK
+
+
+def _print_rates(folder: Path) -> int:
+    with open_results(folder) as store:
+        _print_results(store)
+    return OK
+
+
+def _export_rows(folder: Path, output: Path) -> int:
+    with open_results(folder) as store:
+        levels = dict.fromkeys(f"level.{name}" for count in store.counts() for name in count.levels)
+        with replacing(output) as file:
+            writer = csv.DictWriter(file, (*levels, *COLUMNS), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(store.rows())
+        number = sum(total for _, total, _ in store.outcomes())
+    print_note(f"{number} executions in {output}")
+    return OK
