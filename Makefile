@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench docs package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench docs playground package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -34,6 +34,8 @@ test-editors: $(READY) $(CLIENT_READY) setup-editors | $(filter test-client,$(MA
 	tests/editors/emacs/run.sh
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh
+	$(MAKE) --no-print-directory playground
+	node --test --test-reporter=spec tests/editors/playground/playground.test.mjs
 
 # Installs the editors and Chromium where they are missing.
 setup-editors:
@@ -66,11 +68,19 @@ bench: $(READY)
 	$(BIN)/python -m tests.bench
 
 # The documentation as a site that needs no network, build/site/index.html, and the manual page build/man/robbdd.1.
-docs: $(READY)
+docs: $(READY) playground
 	rm -rf build/pages build/site build/man
 	$(BIN)/python docs/site/pages.py build/pages
 	$(BIN)/sphinx-build -q -W --keep-going -c docs/site build/pages build/site
 	$(BIN)/sphinx-build -q -b man -c docs/site build/pages build/man
+
+# The page of the site in which the language core runs, build/extra/playground.
+PLAYGROUND := docs/site/playground
+playground: $(READY)
+	cd $(PLAYGROUND) && npm ci --no-audit --no-fund --silent
+	rm -rf build/extra && mkdir -p build/extra
+	node $(PLAYGROUND)/build.mjs build/extra/playground
+	$(BIN)/python $(PLAYGROUND)/bundle.py build/extra/playground/core.zip
 
 # What a release consists of: wheel, source distribution and VSIX, in dist/. Dated by the commit, so that anyone can make the
 # same bytes from it.

@@ -16,6 +16,7 @@ project_copyright = "the authors of RobBDD workbench, Apache-2.0"
 extensions = ["myst_parser"]
 highlight_language = "none"
 exclude_patterns = ["schemas"]
+html_extra_path = [str(folder) for folder in (Path(__file__).parents[2] / "build" / "extra",) if folder.is_dir()]
 html_theme = "furo"
 html_title = "RobBDD workbench"
 html_copy_source = False

@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 SECTIONS = {
-    "Start": ("tutorial",),
+    "Start": ("tutorial", "playground"),
     "How to": (
         *("running", "simulation", "robots", "logs", "comparing", "continuous-integration", "editors", "debugging"),
         *("gherkin", "pytest", "python", "troubleshooting"),
@@ -29,6 +29,13 @@ SECTIONS = {
 TOP = ("ARCHITECTURE", "CONTRIBUTING", "SECURITY")
 """Pages from the top of the repository."""
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\((?!\w+:)([^)#\s]*)(#[^)\s]*)?\)")
+PLAYGROUND = """# Playground
+
+Edit a model and see its problems, its Gherkin and its graph. Everything runs in this page; nothing is sent anywhere.
+[Open it in a page of its own](playground/index.html).
+
+<iframe src="playground/index.html" title="Playground" style="width: 100%; height: 42rem; border: 1px solid"></iframe>
+"""
 COMMENT = re.compile(r"(?:^//.*\n)+")
 KINDS = (".bdd", ".scene", ".bddx", ".scenex", ".ktree")
 
