@@ -75,11 +75,14 @@ docs: $(READY) playground
 	$(BIN)/sphinx-build -q -b man -c docs/site build/pages build/man
 
 # The page of the site in which the language core runs, build/extra/playground.
+# Its packages are installed outside of docs/, whose pages are searched.
 PLAYGROUND := docs/site/playground
 playground: $(READY)
-	cd $(PLAYGROUND) && npm ci --no-audit --no-fund --silent
+	mkdir -p build/playground
+	cp $(PLAYGROUND)/*.* $(PLAYGROUND)/.npmrc build/playground
+	cd build/playground && npm ci --no-audit --no-fund --silent
 	rm -rf build/extra && mkdir -p build/extra
-	node $(PLAYGROUND)/build.mjs build/extra/playground
+	node build/playground/build.mjs build/extra/playground
 	$(BIN)/python $(PLAYGROUND)/bundle.py build/extra/playground/core.zip
 
 # What a release consists of: wheel, source distribution and VSIX, in dist/. Dated by the commit, so that anyone can make the

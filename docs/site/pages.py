@@ -32,7 +32,7 @@ LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\((?!\w+:)([^)#\s]*)(#[^)\s
 PLAYGROUND = """# Playground
 
 Edit a model and see its problems, its Gherkin and its graph. Everything runs in this page; nothing is sent anywhere.
-[Open it in a page of its own](playground/index.html).
+It has to be served: `python -m http.server --directory build/site`.
 
 <iframe src="playground/index.html" title="Playground" style="width: 100%; height: 42rem; border: 1px solid"></iframe>
 """
@@ -53,9 +53,9 @@ def assemble(folder: Path) -> None:
     (folder / "examples").mkdir()
     for example in examples():
         (folder / "examples" / f"{example.name}.md").write_text(example_page(example), encoding="utf-8")
-    (folder / "index.md").write_text(
-        linked(ROOT / "README.md", Path("index.md")) + contents(sections()), encoding="utf-8"
-    )
+    (folder / "playground.md").write_text(PLAYGROUND, encoding="utf-8")
+    start = linked(ROOT / "README.md", Path("index.md"))
+    (folder / "index.md").write_text(start + contents(sections()), encoding="utf-8")
 
 
 def examples() -> list[Path]:
