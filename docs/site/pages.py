@@ -17,7 +17,17 @@ DOCS = ROOT / "docs"
 SECTIONS = {
     "Start": ("tutorial", "playground"),
     "How to": (
-        *("running", "simulation", "robots", "logs", "comparing", "continuous-integration", "editors", "debugging"),
+        *(
+            "running",
+            "simulation",
+            "robots",
+            "logs",
+            "campaigns",
+            "comparing",
+            "continuous-integration",
+            "editors",
+            "debugging",
+        ),
         *("gherkin", "pytest", "python", "troubleshooting"),
     ),
     "Examples": (),
