@@ -136,7 +136,9 @@ def argument_parser() -> argparse.ArgumentParser:
     studies = add_study(commands.add_parser("study", help="execute the combinations of a .study file many times"))
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
-    view.add_argument("path", metavar="FILE", type=Path)
+    view.add_argument("path", metavar="FILE", nargs="?", type=Path)
+    text = "show this arm alone, and what was found in its MJCF or URDF file; or an arm of the catalog"
+    view.add_argument("--robot", metavar="ARM", help=text)
     view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
     view.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
     allow_scenex(view)
@@ -283,8 +285,12 @@ def _import(options: argparse.Namespace) -> int:
 
 
 def _view(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.view import view
+    from robbdd_tools.commands.view import view, view_robot
 
+    if options.robot is not None:
+        return view_robot(options.robot, options.output)
+    if options.path is None:
+        return fail("name a model (FILE) or an arm (--robot ARM)")
     return view(options.path, options.scenario, options.seed, options.output, options.scenex or ())
 
 

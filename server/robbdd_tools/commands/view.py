@@ -1,4 +1,4 @@
-"""``robbdd view``: render the initial scene of a scenario with labelled workspaces."""
+"""``robbdd view``: render the initial scene of a scenario with labelled workspaces, or one arm."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.commands.run import Outputs, report_problems
-from robbdd_tools.run.pictures import NoPictures, render_scene
+from robbdd_tools.run.pictures import NoPictures, render_robot, render_scene
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.model import load, read_instances
 from robbdd_tools.workbench.plan import Plan, Selection
@@ -26,6 +26,23 @@ def view(path: Path, name: str | None, seed: int | None, output: Path | None, sc
     ``scenex`` are files with scene instances for scenarios without an execution.
     """
     return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output, scenex))
+
+
+def view_robot(arm: str, output: Path | None) -> int:
+    """Print a report on an arm, given by its model file or its name in the catalog, and draw it; return the exit code.
+
+    Without graphics, the report is printed all the same.
+    """
+    file = Path(arm).expanduser()
+    target = output or Path(f"{file.stem}.png")
+    try:
+        lines, problem = render_robot(str(file.absolute()) if file.is_file() else arm, target)
+    except NoPictures as error:
+        return fail(str(error))
+    print_line(f"{target}: {arm}" if not problem else arm)
+    for line in lines:
+        print_line(line)
+    return fail(problem) if problem else OK
 
 
 def _view(path: Path, name: str | None, seed: int | None, output: Path | None, scenex: Sequence[Path]) -> int:

@@ -75,6 +75,34 @@ def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, in
     return len(_render(folder, THUMBNAILS, output, [f"{index}:{line}" for index, line in chosen]))
 
 
+def render_robot(arm: str, output: Path) -> tuple[list[str], str]:
+    """Render one arm alone; return the lines of the report on it, and why there is no picture, empty if there is one.
+
+    ``arm`` is the path of an MJCF or URDF file or a name of the catalog. Raises ``NoPictures`` if it cannot be used.
+    """
+    tried: list[str] = []
+    for back_end in back_ends():
+        done = run("robbdd_tools.agent.show_robot", arm, str(output.absolute()), more={"MUJOCO_GL": back_end})
+        if done.returncode == 0:
+            return done.stdout.splitlines(), ""
+        said = _last_line(done.stderr, done.returncode)
+        if done.returncode != NO_GRAPHICS:
+            raise NoPictures(said)
+        tried.append(f"{back_end}: {said}")
+    done = run("robbdd_tools.agent.show_robot", arm, "-", more={"MUJOCO_GL": "disable"})
+    if done.returncode != 0:
+        raise NoPictures(_last_line(done.stderr, done.returncode))
+    return done.stdout.splitlines(), _nothing_renders(tried)
+
+
+def _last_line(text: str, code: int) -> str:
+    return (text.strip().splitlines() or [f"the rendering process ended with code {code}"])[-1]
+
+
+def _nothing_renders(tried: list[str]) -> str:
+    return f"nothing here can render without a display: {advice()} ({'; '.join(tried)})"
+
+
 def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
     """Return the names of the pictures."""
     arguments = (str(folder.absolute()), what, str(output.absolute()), *more)
@@ -83,8 +111,8 @@ def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> 
         done = run("robbdd_tools.agent.render_run", *arguments, more={"MUJOCO_GL": back_end})
         if done.returncode == 0:
             return done.stdout.splitlines()
-        said = (done.stderr.strip().splitlines() or [f"the rendering process ended with code {done.returncode}"])[-1]
+        said = _last_line(done.stderr, done.returncode)
         if done.returncode != NO_GRAPHICS:
             raise NoPictures(said)
         tried.append(f"{back_end}: {said}")
-    raise NoPictures(f"nothing here can render without a display: {advice()} ({'; '.join(tried)})")
+    raise NoPictures(_nothing_renders(tried))

@@ -31,6 +31,10 @@ CLOSE, DOWN = 1.1, -30.0
 """Distance (m) and elevation (degrees) of the camera for one object."""
 AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
 """Camera directions (degrees) for one object, best first."""
+DISTANT, SLIGHTLY_DOWN = 1.35, -28.0
+"""Distance as a multiple of an arm's size, and elevation (degrees) of the camera for one arm."""
+AXIS, THICK = 0.12, 0.006
+"""Length and thickness (m) of the axes of a tool."""
 LONGEST = 90
 """Maximum bytes of a label in the engine."""
 
@@ -79,6 +83,23 @@ class Camera:
         data.qpos[:] = state
         mujoco.mj_forward(self._simulation.model, data)
         return self.take(data, focus)
+
+    def take_arm(self, data: Any, name: str, azimuth: float) -> NDArray[np.uint8]:
+        """Render one arm with the frame of its tool (x red, y green, z blue), from a direction (degrees)."""
+        model, robot = self._simulation.model, self._simulation.robots[name]
+        arm = {int(model.body_rootid[model.geom_bodyid[pad]]) for pad in robot.pads}
+        own = [geom for geom in range(model.ngeom) if int(model.body_rootid[model.geom_bodyid[geom]]) in arm]
+        places, around = data.geom_xpos[own], model.geom_rbound[own].reshape(-1, 1)
+        low, high = (places - around).min(axis=0), (places + around).max(axis=0)
+        self._view.lookat[:] = (low + high) / 2
+        self._view.distance = DISTANT * float(np.linalg.norm(high - low))
+        self._view.azimuth, self._view.elevation = azimuth, SLIGHTLY_DOWN
+        self._renderer.update_scene(data, self._view)
+        place, turn = data.site_xpos[robot.tool], data.site_xmat[robot.tool].reshape(3, 3)
+        for axis in range(3):
+            _add_arrow(self._renderer.scene, place, place + AXIS * turn[:, axis], axis)
+        pixels: NDArray[np.uint8] = self._renderer.render()
+        return pixels
 
     def close(self) -> None:
         """Free the graphics context."""
@@ -132,6 +153,16 @@ class Camera:
         corner = np.array([0.0, side, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
         above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))
         _add(scene, mujoco.mjtGeom.mjGEOM_SPHERE, np.full(3, LABEL), above, turn, (*color, 1.0), name)
+
+
+def _add_arrow(scene: Any, start: FloatArray, end: FloatArray, axis: int) -> None:
+    """Add an arrow in the colour of an axis: red, green or blue."""
+    color = np.array([*np.eye(3)[axis], 1.0], dtype=np.float32)
+    geom = scene.geoms[scene.ngeom]
+    kind = mujoco.mjtGeom.mjGEOM_ARROW
+    mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), color)
+    mujoco.mjv_connector(geom, kind, THICK, start, end)
+    scene.ngeom += 1
 
 
 def _add(

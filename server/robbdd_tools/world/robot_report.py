@@ -1,0 +1,163 @@
+"""Data about an arm as a run uses them: what its file states, what was found in it and what is assumed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.api import GripperKind
+from robbdd_tools.catalog.executable import ArmModel
+from robbdd_tools.world.composition import COLUMN
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.model_files import velocity_limits
+from robbdd_tools.world.robot_files import robot_from
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import RobotModel
+    from robbdd_tools.catalog.executable import ModelSource
+    from robbdd_tools.world.simulation import Simulation
+
+NUMBERED = re.compile(r"(actuator|joint)\d+")
+"""Names that actuators and joints without a name get."""
+FOUND = "robbdd-"
+"""Prefix of names that files of arms do not have: they are added where a part has no name, and to what was found."""
+SAME = 1e-3
+"""Difference (rad, m) of the joints of an open gripper up to which it is the same one."""
+
+
+def report(simulation: Simulation, name: str, source: ModelSource | None) -> Iterator[str]:
+    """Yield the lines of a report on an agent. ``source`` is the file of its model, ``None`` for one of the catalog."""
+    robot, model = simulation.robots[name].model, simulation.model
+    fingers = "a suction cup" if robot.gripper is GripperKind.SUCTION else "two fingers"
+    mass = sum(float(model.body_mass[body]) for body in _bodies(model, name))
+    yield f"an arm of {len(robot.joints)} joints with {fingers}, {mass:.3g} kg"
+    yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
+    yield f"home: {_origin_of_home(simulation, name, source)}"
+    yield f"tool: {_tool(simulation, name)}"
+    yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
+        f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'wide' if fingers == 'two fingers' else 'across'}"
+    )
+    faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
+    yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
+
+
+def as_stated(robot: RobotModel, name: str, source: ModelSource) -> ArmModel:
+    """Return the data of an arm as a scene instance can state them, so that the arm stays the same.
+
+    Data about a gripper are left out if they would change it: of several actuators that close it, one can be named.
+    """
+    if NUMBERED.fullmatch(robot.gripper_actuator):
+        return ArmModel(home=robot.home, velocity=robot.velocity_limits)
+    faces = finger_motion(robot).faces
+    pads = tuple(face[0] for face in faces if len(face) == 1 and not face[0].startswith(FOUND))
+    tool = "" if robot.tool_site.startswith(FOUND) else robot.tool_site
+    plain = ArmModel(tool=tool, home=robot.home, velocity=robot.velocity_limits)
+    full = replace(
+        plain,
+        actuator=robot.gripper_actuator,
+        open=robot.gripper_open,
+        closed=robot.gripper_closed,
+        pads=pads if len(pads) == len(faces) else (),
+        stroke=robot.stroke,
+    )
+    try:
+        again = robot_from(replace(source, iri=f"{source.iri}-stated", arm=full), name)
+    except SceneError:
+        return plain
+    one, other = (dict(finger_motion(found).open_joints) for found in (robot, again))
+    same = one.keys() == other.keys() and all(abs(one[joint] - other[joint]) < SAME for joint in one)
+    return full if same and again.pads == robot.pads else plain
+
+
+def stated(arm: ArmModel, source: ModelSource, joints_slide: bool) -> Iterator[str]:
+    """Yield the lines of a ``.scenex`` that state the data of an arm, to be changed where they are wrong."""
+    yield f"model arm_model as {source.format} {{"
+    yield f"    sys path = '{source.name}'"
+    if arm.tool:
+        yield f'    tool: "{arm.tool}"'
+    if arm.actuator:
+        yield "    gripper {"
+        yield f'        actuator: "{arm.actuator}"'
+        yield f"        open: {arm.open:.6g}"
+        yield f"        close: {arm.closed:.6g}"
+        if arm.pads:
+            pads = ", ".join(f'"{pad}"' for pad in arm.pads)
+            yield f"        pads: {pads}"
+        yield f"        stroke: {1000 * arm.stroke:.4g} mm"
+        yield "    }"
+    yield f"    home: ({', '.join(_number(value, 6) for value in arm.home)}) rad"
+    note = "   // sliding joints in m/s" if joints_slide else ""
+    yield f"    velocity: ({', '.join(f'{value:.4g}' for value in arm.velocity)}) rad/s{note}"
+    yield "}"
+
+
+def slides(model: Any, name: str, robot: RobotModel) -> list[bool]:
+    """Return for each joint of an arm whether it is a sliding one."""
+    kinds = (model.joint(f"{name}/{joint}").type[0] for joint in robot.joints)
+    return [int(kind) == int(mujoco.mjtJoint.mjJNT_SLIDE) for kind in kinds]
+
+
+def _bodies(model: Any, name: str) -> list[int]:
+    names = [str(model.body(body).name) for body in range(model.nbody)]
+    return [body for body, own in enumerate(names) if own.startswith(f"{name}/") and own != f"{name}/{COLUMN}"]
+
+
+def _joints(model: Any, name: str, robot: RobotModel, source: ModelSource | None) -> Iterator[list[str]]:
+    written = velocity_limits(source, robot.joints, 0.0) if source is not None else robot.velocity_limits
+    for number, (joint, is_sliding) in enumerate(zip(robot.joints, slides(model, name, robot), strict=True)):
+        found = model.joint(f"{name}/{joint}")
+        unit = "m" if is_sliding else "rad"
+        low, high = (float(bound) for bound in found.range)
+        limits = f"{low:.4g} to {high:.4g} {unit}" if model.jnt_limited[found.id] else "none in the file: one turn"
+        assumed = "" if written[number] else " (assumed)"
+        speed = f"{robot.velocity_limits[number]:.4g} {unit}/s{assumed}"
+        yield [
+            joint,
+            "sliding" if is_sliding else "rotating",
+            limits,
+            speed,
+            f"{_number(robot.home[number], 4)} {unit}",
+        ]
+
+
+def _number(value: float, digits: int) -> str:
+    """Return a number with some decimals, without trailing zeros and without a negative zero."""
+    return f"{round(float(value), digits) + 0.0:g}"
+
+
+def _table(rows: list[list[str]]) -> Iterator[str]:
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    for row in rows:
+        yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+
+
+def _origin_of_home(simulation: Simulation, name: str, source: ModelSource | None) -> str:
+    model, robot = simulation.model, simulation.robots[name]
+    if source is None:
+        return "of the catalog"
+    homes: Any = model.key_qpos[:, robot.joints]
+    key = next((key for key in range(model.nkey) if np.allclose(homes[key], robot.model.home, atol=1e-4)), None)
+    if key is None:
+        return "found by a search: the tool points down, the arm reaches far"
+    return f"key frame '{str(model.key(key).name).rpartition('/')[2]}' of the file"
+
+
+def _tool(simulation: Simulation, name: str) -> str:
+    robot, model, data = simulation.robots[name], simulation.model, simulation.data
+    place = ", ".join(_number(value, 3) for value in data.site_xpos[robot.tool] - np.array(robot.base.position))
+    where = f"at ({place}) m from the base at home"
+    if robot.model.tool_site.startswith(FOUND):
+        body = str(model.body(int(model.site_bodyid[robot.tool])).name).rpartition("/")[2]
+        return f"found between the tips of the gripping faces, on '{body}', {where}"
+    return f"the site '{robot.model.tool_site}', {where}"
+
+
+def _friction(model: Any, name: str, robot: RobotModel) -> str:
+    values = {round(float(model.geom(f"{name}/{pad}").friction[0]), 3) for pad in robot.pads}
+    return f"friction {' and '.join(f'{value:g}' for value in sorted(values))}"

@@ -1,0 +1,94 @@
+"""``robbdd view --robot``: what was found in the file of an arm, how to state it, and a picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robbdd_tools.agent.show_robot import NAME, source_of
+from robbdd_tools.cli import main
+from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.robot_report import as_stated, stated
+from world import strangers
+from world.arms import MJCF
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / ("arm.urdf" if text.startswith("<robot") else "arm.xml")
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.physics
+def test_it_says_what_was_found_and_writes_a_picture_or_what_to_install(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, target = write(tmp_path, strangers.GANTRY), tmp_path / "arm.png"
+    code = main(["view", "--robot", str(path), "-o", str(target)])
+    said = capsys.readouterr()
+    if code == 0:
+        assert target.read_bytes().startswith(b"\x89PNG")
+    else:
+        assert "install EGL (libegl1 and libgl1) or OSMesa (libosmesa6)" in said.err
+    for line in (
+        "an arm of 4 joints with two fingers, ",
+        "  turn   rotating  none in the file: one turn  2.5 rad/s      ",
+        "home: found by a search: the tool points down, the arm reaches far",
+        "gripper: actuator 'grip', open at 0.04, closed at 0, 80 mm wide",
+        "        velocity: (0.8, 0.8, 0.5, 2.5) rad/s   // sliding joints in m/s",
+    ):
+        assert line in said.out
+
+
+def test_without_graphics_the_report_is_printed_all_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "nonsense")
+    key = '<keyframe><key name="ready" qpos="0 .2 1.6 1.3416 0 .04 .04"/></keyframe></mujoco>'
+    path = write(tmp_path, MJCF.replace("</mujoco>", key))
+    assert main(["view", "--robot", str(path), "-o", str(tmp_path / "arm.png")]) == 2
+    said = capsys.readouterr()
+    assert "home: key frame 'ready' of the file" in said.out
+    assert "1 rad/s (assumed)" in said.out
+    assert "nothing here can render without a display: install EGL" in said.err
+    assert not (tmp_path / "arm.png").exists()
+
+
+def test_an_arm_that_cannot_be_used_and_a_missing_file_are_reported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["view", "--robot", str(write(tmp_path, strangers.CUP_ONLY)), "-o", str(tmp_path / "arm.png")]) == 2
+    assert "has no gripper: beyond the body 'b6'" in capsys.readouterr().err
+    assert main(["view", "--robot", "nothing-like-it"]) == 2
+    assert "there is no model file" in capsys.readouterr().err
+    assert main(["view"]) == 2
+    assert capsys.readouterr().err == "robbdd: name a model (FILE) or an arm (--robot ARM)\n"
+
+
+def test_an_arm_of_the_catalog_is_shown_by_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["view", "--robot", "ur10", "-o", str(tmp_path / "arm.png")])
+    said = capsys.readouterr().out
+    assert "an arm of 6 joints with a suction cup" in said
+    assert "home: of the catalog" in said
+    assert "scenex" not in said
+
+
+@pytest.mark.parametrize("text", [strangers.SCARA, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF])
+def test_an_arm_as_it_is_stated_is_the_same_arm(tmp_path: Path, text: str) -> None:
+    source = source_of(str(write(tmp_path, text)))
+    found = robot_from(source, NAME)
+    again = robot_from(replace(source, iri="view:again", arm=as_stated(found, NAME, source)), NAME)
+    assert replace(again, mjcf=found.mjcf) == found
+    one, other = (dict(finger_motion(robot).open_joints) for robot in (found, again))
+    assert one == pytest.approx(other, abs=1e-3)
+
+
+@pytest.mark.parametrize(("text", "has_gripper"), [(strangers.SCARA, False), (strangers.SIX, True)])
+def test_a_gripper_that_several_actuators_close_is_not_stated(tmp_path: Path, text: str, has_gripper: bool) -> None:
+    source = source_of(str(write(tmp_path, text)))
+    lines = list(stated(as_stated(robot_from(source, NAME), NAME, source), source, joints_slide=False))
+    assert ("    gripper {" in lines) is has_gripper
+    assert lines[0] == "model arm_model as mjcf {"
