@@ -10,12 +10,14 @@ import pytest
 
 from robbdd_tools.agent.behaviour_run import Timing
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, During, TimeConstraint
+from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.protocol.clauses import Fluent
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.gaps import GapSampler
 from robbdd_tools.world.joint_clearance import joint_clearances
-from world.worlds import BIN, BIN_WS, CUBE, OTHER_BIN, PANDA, execution, pick_place
+from world.worlds import BIN, BIN_WS, CUBE, OTHER_BIN, OTHER_WS, PANDA, execution, pick_place
 
 SHAPES = """<mujoco><worldbody>
   <body name="box"><geom type="box" size=".1 .2 .3"/></body>
@@ -109,6 +111,27 @@ def test_gaps_are_measured_in_the_windows_of_their_clauses() -> None:
     apart = run.measured(fluent(After("t:place-end", 0.25, which="every"), CUBE, OTHER_BIN), trace)
     assert np.isfinite(apart.gaps[OTHER_BIN, CUBE]).sum() in (15, 16, 17)
     assert np.nanmin(apart.gaps[OTHER_BIN, CUBE]) > 0.1
+
+
+@pytest.mark.physics
+def test_the_arm_keeps_its_distance_to_one_bin_but_not_to_the_one_that_it_reaches_into() -> None:
+    run = execution([pick_place(CUBE, BIN_WS)])
+    trace = run.advance_until(lambda _: False)
+
+    def verdict(other: str) -> Verdict:
+        clause = fluent(During("t:pick-start", "t:place-end"), PANDA, other)
+        arguments = {"one": PANDA, "distance": "5 cm", "other": other}
+        return judge(clause.predicate, arguments, clause.time, run.measured(clause, trace), run.regions)
+
+    far, near = verdict(OTHER_WS), verdict(BIN_WS)
+    assert (far.outcome, near.outcome) == (Outcome.HOLDS, Outcome.VIOLATED)
+    assert near.robustness is not None
+    assert -5.0 < near.robustness < 0.0
+    # Nothing was measured before the window: a wider one is unknown.
+    wider = During("t:start", "t:place-end")
+    measured = run.complete(trace)
+    arguments = {"one": PANDA, "distance": "5 cm", "other": OTHER_WS}
+    assert judge(fluent(wider).predicate, arguments, wider, measured, run.regions).outcome is Outcome.UNKNOWN
 
 
 @pytest.mark.physics
