@@ -190,6 +190,52 @@ def _replaced(one: Message) -> Message:
     return detected([("", "cube0", (where.x, where.y, where.z))], one.received, topic="/camera/objects")
 
 
+@pytest.mark.parametrize(
+    ("stated", "verdict", "reason"),
+    [
+        (("2 mm",), "holds", ""),
+        (("40 mm",), "unknown", "is within the uncertainty of the measurements, ±0.08 m"),
+        (("2 mm", "cube0=70 mm"), "unknown", "is within the uncertainty of the measurements, ±0.072 m"),
+        (("40 mm", "cube0=0 mm", "bin_left=1 mm"), "holds", ""),
+    ],
+)
+def test_a_margin_within_the_uncertainty_of_the_measurements_is_unknown(
+    stated: tuple[str, ...], verdict: str, reason: str, models: Path, tmp_path: Path
+) -> None:
+    more = [word for one in stated for word in ("--uncertainty", one)]
+    found, _ = judged(models, tmp_path, drive(), *more)
+    goal = next(one for one in found if one["name"].endswith("at-goal"))
+    assert goal["verdict"] == verdict, goal
+    assert reason in goal["reason"]
+
+
+def test_a_stored_judgement_keeps_its_uncertainty(models: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(models, tmp_path / "models")
+    bag = write(tmp_path / "drive", drive())
+    robbdd(folder, "judge", str(bag), "pickplace.bdd", *ONE, "--uncertainty", "60 mm")
+    again = robbdd(folder, "judge", "1", "pickplace.bdd", "--json", str(tmp_path / "again.json"))
+    assert again.returncode == 1, again.stderr
+    assert verdicts(clauses(tmp_path / "again.json"))["at-goal"] == "unknown"
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--uncertainty", "cub0=3 mm", "the scene has no element 'cub0'; nearest: cube0"),
+        ("--frame", "bin_lef=tray", "the scene has no element 'bin_lef'; nearest: bin_left"),
+        ("--uncertainty", "3", "'3' is no uncertainty: write '3 mm'"),
+        ("--uncertainty", "cube0=3 deg", "'cube0=3 deg' is no uncertainty"),
+        ("--uncertainty", "-3 mm", "'-3 mm' is no uncertainty"),
+        ("--uncertainty", "3 N", "'3 N' is no uncertainty"),
+    ],
+)
+def test_a_wrong_name_or_quantity_is_refused(option: str, value: str, words: str, models: Path, tmp_path: Path) -> None:
+    bag = write(tmp_path / "drive", drive())
+    done = robbdd(models, "judge", str(bag), "pickplace.bdd", "--no-store", *ONE, f"{option}={value}")
+    assert done.returncode == 2
+    assert words in done.stderr
+
+
 ROBOT = """import "pickplace.bdd"
 import "bench.scenex"
 ns exec = 'https://example.org/robbdd/execution/'

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.settings import written
-from robbdd_tools.judging.log_names import FramesProblem, frame_of, local_name, occurrences_of, stated_frames
+from robbdd_tools.judging.log_names import (
+    FramesProblem,
+    elements_of,
+    frame_of,
+    local_name,
+    occurrences_of,
+    stated_frames,
+)
 from robbdd_tools.logs.transforms import Unconnected, poses_at, root_of, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.traces.codec import Evidence
@@ -44,12 +51,14 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 
     Positions are those of the log in the frame of the world; the origin of a frame is that of the element's model. The
     trace has a sample at each observation of a frame that is used, at most ``request.rate`` per second, at each event
-    and in each gap. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model.
+    and in each gap. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model, and
+    ``NoElement`` if the request names something else.
     """
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
     cast = cast_scene(spec.scene, staging)
     remarks = list(contents.remarks)
     events = _events(spec, contents, remarks)
+    elements = (*cast.objects, *cast.agents)
     frames = _Frames(spec, cast, contents, request, remarks)
     times = _times(frames.used(), events, contents, request)
     poses = {element: found for element in cast.objects if (found := frames.object_poses(element, times)) is not None}
@@ -67,6 +76,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         contents={workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains},
         correct_places=spec.scene.correct_places,
         log=Path(request.path).name,
+        uncertain=elements_of(request.uncertainty, elements),
         truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
         immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
     )
@@ -86,7 +96,7 @@ class _Frames:
         self._remarks = remarks
         self.of: dict[str, str] = {}
         """Element → its frame."""
-        stated = {**stated_frames(spec), **request.frames}
+        stated = {**stated_frames(spec), **elements_of(request.frames, (*cast.objects, *cast.agents))}
         for element in (*cast.objects, *cast.agents):
             try:
                 self.of[element] = frame_of(element, contents.tracks, stated)

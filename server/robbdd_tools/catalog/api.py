@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 if TYPE_CHECKING:
     import numpy as np
@@ -183,8 +183,7 @@ class Predicate:
     """A predicate of fluents.
 
     - ``phrase``: its form in a model. A slot is written in ``<…>`` (a reference), as ``$…`` (a bare name), as ``#…`` (a
-      number with a unit, or a variable) or as words.
-    - ``aliases``: other forms with the same meaning and slots.
+      number with a unit, or a variable) or as words. ``aliases`` are other forms with the same meaning and slots.
     - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
     - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.
     - ``evaluate``: the evaluator. It is ``None`` if this installation cannot judge the predicate. Then its clauses are
@@ -194,6 +193,7 @@ class Predicate:
     - ``duration``: set if the predicate is about the time between the two events of ``from … until …`` instead of the
       states at samples. Then ``evaluate`` is for plots only.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
+    - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
     """
 
     name: str
@@ -209,6 +209,7 @@ class Predicate:
     unit_for: UnitChoice | None = None
     set_up: bool = False
     duration: DurationMargin | None = None
+    measured: Literal["nothing", "length", "angle", "speed", "otherwise"] = "otherwise"
 
 
 @dataclass(frozen=True, slots=True)

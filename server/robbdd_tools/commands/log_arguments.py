@@ -26,6 +26,8 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--max-gap", metavar="SECONDS", type=_positive, default=0.5, help=text)
     text = "largest number of samples per second (default: 200)"
     log.add_argument("--rate", metavar="HZ", type=_positive, default=200.0, help=text)
+    text = "largest error of the positions: '3 mm', 'cube1=5 mm'; of angles: '2 deg'; of speeds: '0.05 m/s'; repeats"
+    log.add_argument("--uncertainty", metavar="[ELEMENT=]QUANTITY", type=_uncertainty, action="append", help=text)
     log.add_argument("--no-store", action="store_true", help="do not store the result")
 
 
@@ -35,7 +37,9 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
     from robbdd_tools.workbench.log_judging import LogNames
     from robbdd_tools.workbench.plan import Selection
 
-    names = LogNames(dict(options.frame or ()), options.world or "", options.max_gap, options.rate, options.events)
+    frames: dict[str, str] = dict(options.frame or ())
+    errors: dict[str, float] = dict(options.uncertainty or ())
+    names = LogNames(frames, options.world or "", options.max_gap, options.rate, options.events, errors)
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)
     return JudgeOptions(options.run, paths, options.store, options.json, selection, names, keep=not options.no_store)
@@ -46,6 +50,15 @@ def _frame(text: str) -> tuple[str, str]:
     if not (element and separator and frame):
         raise argparse.ArgumentTypeError(f"'{text}' must be ELEMENT=FRAME, for example cube1=camera/cube")
     return element, frame
+
+
+def _uncertainty(text: str) -> tuple[str, float]:
+    from robbdd_tools.workbench.log_uncertainty import read_uncertainty
+
+    try:
+        return read_uncertainty(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _positive(text: str) -> float:

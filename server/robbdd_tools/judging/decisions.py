@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.settings import SettingError
+from robbdd_tools.judging.uncertainty import certain
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, never_occurred, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
@@ -154,7 +155,8 @@ def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) 
     if fluent.condition is not None and instance.condition is not None:
         condition = fluent.condition.predicate, instance.condition
     try:
-        return judge(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
+        judged = certain if trace.uncertain else judge
+        return judged(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
     except SettingError as error:
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:

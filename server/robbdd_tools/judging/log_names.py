@@ -5,14 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.catalog.event_names import inner_event
+from robbdd_tools.monitor.trace import OTHERS
 
 if TYPE_CHECKING:
     from robbdd_tools.logs.log_contents import TextStamp
     from robbdd_tools.protocol.specs import ScenarioSpec
 
+V = TypeVar("V")
+GROUPS = (OTHERS, "angle", "speed")
+"""Entries of ``Trace.uncertain`` that are not elements."""
 _SEPARATORS = re.compile(r"[\s_.-]+")
 
 
@@ -23,6 +28,26 @@ class FramesProblem(Exception):
 def local_name(curie: str) -> str:
     """Return what follows the last colon of a CURIE, without the path of its set."""
     return re.split(r"[:/#]", curie)[-1]
+
+
+class NoElement(RobbddError):
+    """A request states something about a name that is no element of the scene; the message lists the nearest ones."""
+
+
+def elements_of(stated: Mapping[str, V], elements: Iterable[str]) -> dict[str, V]:
+    """Return a mapping of CURIEs for one of CURIEs or local names. Raises ``NoElement`` for another name.
+
+    Names of groups of elements (``GROUPS``) stay as they are.
+    """
+    known = {word: element for element in elements for word in (element, local_name(element))}
+    found: dict[str, V] = {}
+    for name, value in stated.items():
+        if name not in known and name not in GROUPS:
+            raise NoElement(
+                f"the scene has no element '{name}'{_nearest(name, sorted({local_name(one) for one in known}))}"
+            )
+        found[known.get(name, name)] = value
+    return found
 
 
 def stated_frames(spec: ScenarioSpec) -> dict[str, str]:

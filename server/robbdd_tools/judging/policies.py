@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -29,6 +29,14 @@ def with_policies(clause: Clause, spec: ScenarioSpec) -> Clause:
     return _attached(clause, policies, spec) if policies else clause
 
 
+MEASURED: Mapping[str, Literal["length", "nothing", "otherwise"]] = {
+    "distance": "length",
+    "topic": "nothing",
+    "python": "otherwise",
+}
+"""Kind of a rule → how errors of measured poses change its margin."""
+
+
 def _attached(clause: Clause, policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
     if isinstance(clause, Junction):
         return replace(clause, operands=tuple(_attached(one, policies, spec) for one in clause.operands))
@@ -48,7 +56,7 @@ def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint
 def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any]) -> Predicate:
     judge = Judge(policy, spec, arguments)
     unit = "m" if policy.rule.kind == "distance" else ""
-    return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins)
+    return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins, measured=MEASURED[policy.rule.kind])
 
 
 @dataclass(frozen=True, slots=True)

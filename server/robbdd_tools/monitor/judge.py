@@ -263,7 +263,7 @@ def judge(
     if predicate.duration is not None:
         if condition is not None:
             return unknown(NOT_AN_INTERVAL, Cause.NO_STEP)
-        unit = _unit(predicate, WindowEvidence(trace, Window(0, 0), regions), arguments)
+        unit = unit_of(predicate, WindowEvidence(trace, Window(0, 0), regions), arguments)
         return judge_duration(predicate.duration, arguments, constraint, trace, unit)
     if condition is not None and condition[0].duration is not None:
         return unknown(NOT_AN_INTERVAL, Cause.NO_STEP)
@@ -281,7 +281,7 @@ def judge(
     try:
         margins = margins_of(predicate, evidence, arguments)
         applies = None if condition is None else margins_of(condition[0], evidence, condition[1])
-        unit = _unit(predicate, evidence, arguments)
+        unit = unit_of(predicate, evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
     except Unobserved as gap:
@@ -293,7 +293,8 @@ def judge(
     return throughout(margins, evidence.times, unit)
 
 
-def _unit(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> str:
+def unit_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> str:
+    """Return the unit of a predicate's margin."""
     return predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
 
 

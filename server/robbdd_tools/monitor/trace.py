@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Outline
 
 
+OTHERS = "others"
+"""In ``Trace.uncertain``, all elements without an entry."""
+
+
 @dataclass(frozen=True, slots=True)
 class EventStamp:
     """The name of an event (CURIE) and the simulated time (s) at which it occurred.
@@ -72,6 +76,8 @@ class Trace:
     - ``pending``: the events that could occur again if the execution continued.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
       values, which are NaN.
+    - ``uncertain``: the largest errors of the measurements of a log, in SI units, if they are stated: of the position
+      of an element, or of ``OTHERS``; of ``angle`` and ``speed``.
     - ``truths``: maps a topic of a log to 1 where its last message is true, -1 where it is false, and NaN (n,).
     """
 
@@ -102,6 +108,7 @@ class Trace:
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     gaps: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     joint_clearances: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
+    uncertain: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def end(self) -> float:

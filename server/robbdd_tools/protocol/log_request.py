@@ -18,6 +18,8 @@ class LogRequest:
     - ``world``: the frame of the world; empty for the root of the frames that are used.
     - ``max_gap``: the largest time (s) between two observations of a frame that are interpolated.
     - ``rate``: the largest number of samples of the trace per second.
+    - ``uncertainty``: the largest error of the position of an element (local name or CURIE) or of ``OTHERS``, in m; of
+      ``angle``, in rad; of ``speed``, in m/s.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -27,3 +29,4 @@ class LogRequest:
     max_gap: float = 0.5
     rate: float = 200.0
     annotations: str = ""
+    uncertainty: Mapping[str, float] = field(default_factory=dict[str, float])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -23,6 +23,7 @@ from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results
 from robbdd_tools.workbench.folder import Keeping, new_folder
+from robbdd_tools.workbench.log_uncertainty import read_uncertainty
 from robbdd_tools.workbench.run import begin_recording
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ class LogNames:
     max_gap: float = 0.5
     rate: float = 200.0
     annotations: Path | None = None
+    uncertainty: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,7 @@ def judge_log(
     max_gap: float = 0.5,
     rate: float = 200.0,
     events: str | os.PathLike[str] | None = None,
+    uncertainty: Sequence[str] = (),
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -83,11 +86,15 @@ def judge_log(
     - ``rate``: the largest number of samples per second.
     - ``events``: a CSV table of events that the log does not contain, with the columns ``time`` (s since the begin of
       the log) and ``event``.
+    - ``uncertainty``: the largest errors of the measurements: ``("3 mm", "cube0=5 mm", "2 deg", "0.05 m/s")``. Where
+      they could change a verdict, it is *unknown*.
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
-    Raises ``UnreadableLog``, ``NotOneScenario``, ``UserCodeRefused`` and ``OSError``.
+    Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
+    ``UserCodeRefused`` and ``OSError``.
     """
-    names = LogNames(dict(frames or {}), world, max_gap, rate, None if events is None else Path(events))
+    errors = dict(read_uncertainty(one) for one in uncertainty)
+    names = LogNames(dict(frames or {}), world, max_gap, rate, None if events is None else Path(events), errors)
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
             pass
@@ -121,7 +128,13 @@ class LogJudgement:
             raise
         annotations = "" if names.annotations is None else str(names.annotations.absolute())
         request = LogRequest(
-            str(log.absolute()), dict(names.frames), names.world, names.max_gap, names.rate, annotations
+            str(log.absolute()),
+            dict(names.frames),
+            names.world,
+            names.max_gap,
+            names.rate,
+            annotations,
+            dict(names.uncertainty),
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)

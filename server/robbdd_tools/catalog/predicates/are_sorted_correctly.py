@@ -47,5 +47,6 @@ ARE_SORTED_CORRECTLY = Predicate(
         "Every object of the set lies in a workspace of the set that is correct for it: 'workspace bin { correct for: "
         "obj <part> }' in the scene. Unknown for an object without a stated workspace."
     ),
+    measured="length",
     evaluate=margin,
 )

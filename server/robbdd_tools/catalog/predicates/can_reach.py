@@ -26,6 +26,7 @@ CAN_REACH = Predicate(
     sentence='"{agent}" can reach "{object}"',
     unit="rad",
     doc="The agent has a collision-free grasp pose for the object within its joint limits.",
+    measured="nothing",
     evaluate=margin,
     quantities=("reach",),
 )

@@ -30,6 +30,7 @@ DOES_NOT_TOUCH = Predicate(
         "No contact force of 0.01 N or more acts between the two, in any step of the physics. What an agent grips "
         "is not part of it."
     ),
+    measured="nothing",
     evaluate=margin,
     quantities=(TOUCH,),
 )

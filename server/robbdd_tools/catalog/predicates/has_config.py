@@ -51,6 +51,7 @@ HAS_CONFIG = Predicate(
         "travel_height, carry_clearance (m), grip_time, release_time (s), mass (kg), friction or seed; or it is judged "
         "by it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
+    measured="nothing",
     evaluate=margin,
     set_up=True,
 )

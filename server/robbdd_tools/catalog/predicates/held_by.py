@@ -26,5 +26,6 @@ HELD_BY = Predicate(
     sentence='"{object}" is held by "{agent}"',
     unit="",
     doc="The agent's gripping faces are in contact with the object from both sides.",
+    measured="nothing",
     evaluate=margin,
 )

@@ -35,6 +35,7 @@ IS_CORRECT_FOR = Predicate(
         "The object belongs in the workspace: 'workspace bin { correct for: obj <part> }' in the scene. "
         "Unknown for an object without a stated workspace."
     ),
+    measured="nothing",
     evaluate=margin,
     set_up=True,
 )

@@ -31,5 +31,6 @@ IS_ENTIRELY_INSIDE = Predicate(
     sentence='"{object}" is entirely inside "{workspace}"',
     unit="m",
     doc="The whole object lies inside the workspace: nothing sticks out at the sides or at the top.",
+    measured="length",
     evaluate=margin,
 )

@@ -35,6 +35,7 @@ IS_FARTHER_THAN = Predicate(
     sentence='"{one}" is farther than "{distance}" from "{other}"',
     unit="m",
     doc="The positions of two elements (centre of an object, tool of an agent) are more than a distance apart.",
+    measured="length",
     evaluate=margin,
     unit_for=unit,
 )

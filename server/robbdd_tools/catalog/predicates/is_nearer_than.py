@@ -35,6 +35,7 @@ IS_NEARER_THAN = Predicate(
     sentence='"{one}" is nearer than "{distance}" to "{other}"',
     unit="m",
     doc="The positions of two elements (centre of an object, tool of an agent) are less than a distance apart.",
+    measured="length",
     evaluate=margin,
     unit_for=unit,
 )

@@ -38,6 +38,7 @@ IS_TILTED_LESS_THAN = Predicate(
     sentence='"{object}" is tilted less than "{limit}"',
     unit="rad",
     doc="The object's own z axis deviates from the vertical by less than an angle, such as 10 deg.",
+    measured="angle",
     evaluate=margin,
     unit_for=unit,
 )

@@ -31,5 +31,6 @@ LOCATED_AT = Predicate(
     sentence='"{object}" is located at "{workspace}"',
     unit="m",
     doc="The object's position (with whole_object its whole body) lies inside a bin, or above a table top.",
+    measured="length",
     evaluate=margin,
 )

@@ -31,5 +31,6 @@ MOVES_SAFELY = Predicate(
     sentence='"{agent}" moves safely',
     unit="m/s",
     doc="The agent's tool is no faster than 0.25 m/s, the reduced speed of ISO 10218-1, or than its max_speed.",
+    measured="speed",
     evaluate=margin,
 )

@@ -36,6 +36,7 @@ MOVES_SLOWER_THAN = Predicate(
     sentence='"{agent}" moves slower than "{limit}"',
     unit="m/s",
     doc="The agent's tool moves slower than a speed, such as 0.25 m/s.",
+    measured="speed",
     evaluate=margin,
     unit_for=unit,
 )

@@ -29,6 +29,7 @@ PRESSES_WITH_LESS_THAN = Predicate(
     sentence='"{one}" presses "{other}" with less than "{limit}"',
     unit="N",
     doc="The contact force between the two is smaller than a force, such as 20 N, in every step of the physics.",
+    measured="nothing",
     evaluate=margin,
     quantities=(TOUCH,),
 )

@@ -44,5 +44,6 @@ SORTED_INTO = Predicate(
     sentence='"{objects}" are sorted into "{workspaces}"',
     unit="m",
     doc="Every object of the set lies in some workspace of the set; with exactly_one in only one.",
+    measured="length",
     evaluate=margin,
 )

@@ -36,6 +36,7 @@ TAKES_LESS_THAN = Predicate(
     sentence='it takes less than "{limit}"',
     unit="s",
     doc="The time from one event until another one is shorter than a limit, such as 12 s.",
+    measured="nothing",
     evaluate=margin,
     unit_for=unit,
     duration=time_left,

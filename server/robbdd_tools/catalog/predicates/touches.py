@@ -24,6 +24,7 @@ TOUCHES = Predicate(
     sentence='"{one}" touches "{other}"',
     unit="N",
     doc="Some contact force of at least 0.01 N acts between the two. What an agent grips is not part of it.",
+    measured="nothing",
     evaluate=margin,
     quantities=(TOUCH,),
 )

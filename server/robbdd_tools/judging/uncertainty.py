@@ -1,0 +1,136 @@
+"""Decide which verdicts are certain, although positions were measured with a stated uncertainty."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.quantity_units import si_factor
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.monitor.judge import WindowEvidence, judge, unit_of
+from robbdd_tools.monitor.time import Window
+from robbdd_tools.monitor.trace import OTHERS
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray, Predicate
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.time import TimeConstraint
+    from robbdd_tools.monitor.trace import Trace
+
+Condition = tuple["Predicate", "Arguments"]
+SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
+ELEMENTS = (Kind.OBJECT, Kind.WORKSPACE, Kind.AGENT, Kind.ANY)
+EXAMPLES = {
+    "angle": "an angle is not stated: add --uncertainty '2 deg'",
+    "speed": "a speed is not stated: add --uncertainty '0.05 m/s'",
+}
+
+
+def certain(
+    predicate: Predicate,
+    arguments: Arguments,
+    constraint: TimeConstraint,
+    trace: Trace,
+    regions: Regions,
+    condition: Condition | None,
+) -> Verdict:
+    """Judge like ``monitor.judge``, but *unknown* where the uncertainty of the measurements could change the verdict.
+
+    A condition of ``whenever`` applies surely where its margin exceeds its uncertainty, and perhaps where it is above
+    the negative uncertainty. So the clause holds surely if it holds wherever its condition perhaps applies, and is
+    violated surely if it is where the condition surely applies.
+    """
+    if condition is None:
+        verdict = judge(predicate, arguments, constraint, trace, regions)
+        return _narrowed(verdict, bound_of(predicate, arguments, trace, regions))
+    doubt = bound_of(*condition, trace, regions)
+    if isinstance(doubt, str):
+        return unknown(doubt, Cause.UNOBSERVED)
+    margin = bound_of(predicate, arguments, trace, regions)
+    perhaps, surely = (
+        judge(predicate, arguments, constraint, trace, regions, _raised(condition, by, trace, regions))
+        for by in (doubt, -doubt)
+    )
+    if surely.outcome is Outcome.VIOLATED:
+        return _narrowed(surely, margin)
+    if perhaps.outcome is not Outcome.VIOLATED:
+        return _narrowed(perhaps, margin)
+    if surely.outcome is Outcome.UNKNOWN:
+        return surely
+    return unknown("whether its condition held is within the uncertainty of the measurements", Cause.UNOBSERVED)
+
+
+def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float | str:
+    """Return the largest error of a predicate's margin in the SI unit, or the reason why it is not known.
+
+    A length changes by at most the sum of the errors of two positions: of the elements that the predicate names, or of
+    others that it does not name.
+    """
+    match predicate.measured:
+        case "nothing":
+            return 0.0
+        case "otherwise":
+            words = f" of '{predicate.name}'" if predicate.phrase else ""
+            return f"how uncertain the margin{words} is cannot be computed from the uncertainty of the measurements"
+        case "angle" | "speed" as kind:
+            return trace.uncertain.get(kind, f"the uncertainty of {EXAMPLES[kind]}")
+        case "length":
+            return _length(predicate, arguments, trace, regions)
+
+
+def _length(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float:
+    found: list[float] = []
+    for slot in predicate.slots:
+        if slot.kind in (*ELEMENTS, *SETS):
+            filler = arguments[slot.name]
+            words = (filler,) if isinstance(filler, str) else filler
+            carriers = [carrier for word in words for carrier in _carriers(word, regions)]
+            found.append(max((error_of(name, trace) for name in carriers), default=0.0))
+    largest = max(trace.uncertain.get(OTHERS, 0.0), *(error_of(name, trace) for name in trace.names), 0.0)
+    return sum((*found, largest, largest)[: max(len(found), 2)])
+
+
+def _carriers(name: str, regions: Regions) -> list[str]:
+    """Return the objects that carry a workspace, or else the element itself."""
+    return [carrier for carrier, _ in regions[name]] if name in regions else [name]
+
+
+def error_of(element: str, trace: Trace) -> float:
+    """Return the largest error of the position of an element, m."""
+    return trace.uncertain.get(element, trace.uncertain.get(OTHERS, 0.0))
+
+
+def _narrowed(verdict: Verdict, bound: float | str) -> Verdict:
+    if verdict.outcome is Outcome.UNKNOWN or verdict.robustness is None:
+        return verdict
+    if isinstance(bound, str):
+        return unknown(bound, Cause.UNOBSERVED)
+    margin = verdict.robustness * si_factor(verdict.unit)
+    if margin >= bound or margin < -bound:
+        return verdict
+    limit = f"{bound / si_factor(verdict.unit):.3g} {verdict.unit}"
+    stated = f"its margin of {verdict.robustness:+.3g} {verdict.unit}"
+    return unknown(f"{stated} is within the uncertainty of the measurements, ±{limit}", Cause.UNOBSERVED)
+
+
+def _raised(condition: Condition, by: float, trace: Trace, regions: Regions) -> Condition:
+    """Return a condition whose margins are larger ``by`` a number in the SI unit."""
+    predicate, arguments = condition
+    if predicate.evaluate is None or not by:
+        return condition
+    unit = unit_of(predicate, WindowEvidence(trace, Window(0, 0), regions), arguments)
+    return replace(predicate, evaluate=_Raised(predicate.evaluate, by / si_factor(unit))), arguments
+
+
+class _Raised:
+    """An evaluator whose margins are those of another one, plus a number."""
+
+    def __init__(self, evaluate: Callable[[Evidence, Arguments], FloatArray], by: float) -> None:
+        self._evaluate = evaluate
+        self._by = by
+
+    def __call__(self, evidence: Evidence, arguments: Arguments) -> FloatArray:
+        return self._evaluate(evidence, arguments) + self._by

@@ -1,0 +1,27 @@
+"""Read the uncertainty of the measurements of a log as users state it."""
+
+from __future__ import annotations
+
+from robbdd_tools.base.quantity_units import QuantityError, read_quantity
+from robbdd_tools.monitor.trace import OTHERS
+
+FORM = "write '3 mm', 'cube1=5 mm', '2 deg' or '0.05 m/s'"
+KEYS = {"length": OTHERS, "angle": "angle", "speed": "speed"}
+"""Dimension of a quantity → its entry in ``LogRequest.uncertainty``."""
+
+
+def read_uncertainty(text: str) -> tuple[str, float]:
+    """Return what ``[ELEMENT=]QUANTITY`` is about, and the quantity in the SI unit; see ``LogRequest.uncertainty``.
+
+    Raises ``QuantityError`` for another text.
+    """
+    element, separator, stated = text.rpartition("=")
+    for dimension, key in KEYS.items():
+        try:
+            value = read_quantity(stated, dimension).si
+        except QuantityError:
+            continue
+        if value < 0 or (separator and (not element or dimension != "length")):
+            break
+        return element.strip() or key, value
+    raise QuantityError(f"'{text}' is no uncertainty: {FORM}")
