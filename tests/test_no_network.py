@@ -64,6 +64,7 @@ COMMANDS = (
     "report latest -o report.html --store runs",
     "study run one.study --store studies",
     "study status one.study --store studies",
+    "study plan --width 0.05",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",

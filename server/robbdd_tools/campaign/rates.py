@@ -124,6 +124,20 @@ def separate_probability(before: tuple[int, int], after: tuple[int, int]) -> flo
     return float(statistics().fisher_exact(table).pvalue)
 
 
+def executions_for_width(rate: float, width: float, level: float = LEVEL) -> int:
+    """Return how many executions make Wilson's interval of a pass rate at most ``width`` wide, if ``rate`` is observed.
+
+    Raises ``ValueError`` for numbers that are no shares.
+    """
+    if not 0.0 <= rate <= 1.0 or not 0.0 < width < 1.0:
+        raise ValueError("the pass rate has to be from 0 to 1, and the width between 0 and 1")
+    reach, spread = _quantile(level) ** 2, rate * (1.0 - rate)
+    # width² (n + z²)² = 4 z² (rate (1 - rate) n + z² / 4), solved for n.
+    linear = reach * (width**2 - 2.0 * spread)
+    constant = reach**2 * (width**2 - 1.0)
+    return max(1, math.ceil((math.sqrt(linear**2 - width**2 * constant) - linear) / width**2 - _EDGE))
+
+
 def pairs_needed(discordance: float, difference: float, power: float = 0.8, level: float = LEVEL) -> int:
     """Return how many pairs of executions show a difference of pass rates by McNemar's test (Connor 1987).
 

@@ -13,6 +13,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes, path_to_uri, read_text
+from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
 from robbdd_tools.campaign.study_text import Factor, StudyText, Word, read_study
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.run_policy import TIMEOUT
@@ -73,6 +74,14 @@ class Study:
     def timeout(self) -> float:
         """The limit of wall time for one scenario in s; 0 for no limit."""
         return self.content.numbers.get("timeout", TIMEOUT)
+
+    @property
+    def stop(self) -> StopRule | None:
+        """The rule that ends the study early."""
+        numbers = self.content.numbers
+        if "stop width" in numbers:
+            return UntilWidth(numbers["stop width"])
+        return RatioTest(numbers["stop rate"], numbers["stop against"]) if "stop rate" in numbers else None
 
     @cached_property
     def digest(self) -> str:

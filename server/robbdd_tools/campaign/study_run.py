@@ -25,6 +25,7 @@ from robbdd_tools.workbench.resuming import resume
 from robbdd_tools.workbench.run import Run
 
 if TYPE_CHECKING:
+    from robbdd_tools.campaign.stopping import Ruling
     from robbdd_tools.campaign.study_file import Study
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import StoredRun
@@ -79,7 +80,8 @@ def remove_results(folder: Path) -> None:
 class StudyRun:
     """A study in progress. Use it as a context manager and iterate over ``progress`` once.
 
-    After that, ``ending`` is the reason why executions are open; it is empty for a complete study.
+    After that, ``ending`` is the reason why executions are open; it is empty for a study that is complete, or that its
+    rule has stopped (``ruling``).
     """
 
     def __init__(self, study: Study, folder: Path, policy: Policy, *, resumed: bool) -> None:
@@ -122,6 +124,11 @@ class StudyRun:
         """The number of executions of the whole study."""
         return sum(batch.size for batch in self.batches)
 
+    def ruling(self) -> Ruling | None:
+        """Return the decision of the study's rule from all stored executions; ``None`` for no decision or no rule."""
+        finished, holding = self._stored()
+        return None if self._study.stop is None else self._study.stop.ruling(holding, finished)
+
     def cancel(self, reason: str) -> None:
         """End the study within half a second. It may be called from any thread or signal handler."""
         self._reason = self._reason or reason
@@ -139,6 +146,8 @@ class StudyRun:
         finished, holding = self._stored()
         began, before = monotonic(), finished
         for batch in self.batches:
+            if self._decided(batch):
+                return
             if batch.number in done:
                 continue
             for count in self._execute(batch):
@@ -149,6 +158,17 @@ class StudyRun:
                 return
             finished, holding = self._stored()
             yield StudyProgress(finished, self.total, holding, (finished - before) / max(monotonic() - began, 1e-9))
+
+    def _decided(self, batch: Batch) -> bool:
+        """Return whether the study stops before a batch, which it does only before the first one of a stage."""
+        rule = self._study.stop
+        earlier = [one.number for one in self.batches if one.stage < batch.stage]
+        if rule is None or not earlier or self.batches[batch.number - 2].stage == batch.stage:
+            return False
+        counted = [(total, holding) for number, total, holding in self.store.outcomes() if number <= earlier[-1]]
+        totals = (sum(column) for column in zip(*counted, strict=True))
+        total, holding = totals if counted else (0, 0)
+        return rule.ruling(holding, total) is not None
 
     def _execute(self, batch: Batch) -> Iterator[int]:
         """Execute a batch and store its results. Yield the number of its finished executions after each of them."""

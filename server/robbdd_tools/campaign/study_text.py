@@ -7,6 +7,7 @@
             | "where" ":" text
             | ( "first" | "sample" | "pairwise" | "repeat" | "seed" | "batch" ) ":" whole number
             | "timeout" ":" number "seconds"
+            | "stop" ":" ( "width" number | "rate" number "against" number )
             | "factor" "scene" ":" "{" text { "," text } "}"
             | "factor" "bhv" "<" name ">" ":" "{" name { "," name } "}"
 
@@ -104,7 +105,7 @@ _NUMBERS: Mapping[str, _NumberRange] = {
     "timeout": _NumberRange(0, MOST_SECONDS, is_whole=False, unit="seconds"),
 }
 _REDUCING = ("first", "sample", "pairwise")
-SETTINGS = ("scenarios", "where", *_NUMBERS, "factor")
+SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "factor")
 """The words that begin a setting."""
 
 
@@ -154,6 +155,7 @@ class _Reader:
             "scenarios": self._scenarios,
             "where": self._where,
             "factor": self._factor,
+            "stop": self._stop,
         }
         if word.text not in SETTINGS or word.kind != "name":
             raise _Unexpected(word, f"'{word.text}' is not a setting of a study{_meant(word.text)}")
@@ -218,6 +220,28 @@ class _Reader:
         if wanted.unit:
             self._expect(wanted.unit, f"the unit '{wanted.unit}'")
         self._found.numbers[name] = value
+
+    def _stop(self) -> None:
+        self._expect(":")
+        rule = self._take()
+        if rule.text == "width":
+            self._found.numbers["stop width"] = self._share()
+        elif rule.text == "rate":
+            required = self._share()
+            self._expect("against")
+            place = self._peek()
+            refused = self._share()
+            if refused >= required:
+                raise _Unexpected(place, f"the rate after 'against' has to be below {required:g}")
+            self._found.numbers |= {"stop rate": required, "stop against": refused}
+        else:
+            raise _Unexpected(rule, "a study stops at 'width 0.05' or 'rate 0.95 against 0.9'")
+
+    def _share(self) -> float:
+        token = self._kind("number", "a number between 0 and 1")
+        if not 0.0 < float(token.text) < 1.0:
+            raise _Unexpected(token, f"expected a number between 0 and 1, not {token.text}")
+        return float(token.text)
 
     def _list(self, one: Callable[[], Word]) -> tuple[Word, ...]:
         self._expect("{")

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.base.writing import replacing
+from robbdd_tools.campaign.stopping import RatioTest, Ruling
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_rates import study_rates
 from robbdd_tools.campaign.study_run import StudyRun, open_batch, open_results, remove_results, study_folder
-from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
+from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.rate_lines import level_line, level_lines
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 PAUSE = 10.0
 """Seconds between two lines of progress."""
+RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
+"""Exit codes of a required pass rate."""
 INTERRUPTED = "the study was interrupted"
 
 
@@ -52,7 +55,8 @@ class StudyOptions:
 def run_study(options: StudyOptions) -> int:
     """Execute the open executions of a study.
 
-    Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end.
+    Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end. With a
+    required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if the executions do not tell.
     """
     return _explained(lambda: _run_study(options))
 
@@ -97,6 +101,12 @@ def _run_study(options: StudyOptions) -> int:
         if ended_by or run.ending:
             print_note(f"robbdd: {run.ending}: continue with `robbdd study resume {options.path}`")
             return signal_code(ended_by) if ended_by else FAILED
+        if study.stop is not None:
+            ruling = run.ruling()
+            print_line("")
+            print_line(study.stop.words(ruling))
+            if isinstance(study.stop, RatioTest):
+                return RULED.get(ruling, CANNOT_TELL)
         return OK if all(total == holding for _, total, holding in run.store.outcomes()) else FINDINGS
 
 

@@ -31,7 +31,30 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         _allow_store(one)
         one.set_defaults(command=command)
+    _add_plan(commands.add_parser("plan", help="print how many executions a wanted interval or comparison needs"))
     return run, resume
+
+
+def _add_plan(plan: argparse.ArgumentParser) -> None:
+    plan.add_argument("--rate", metavar="P", type=float, default=0.9, help="the expected pass rate (default: 0.9)")
+    plan.add_argument("--width", metavar="W", type=float, help="the wanted width of its interval, such as 0.05")
+    text = "the change of the pass rate that a comparison is to show, such as -0.05"
+    plan.add_argument("--difference", metavar="D", type=float, help=text)
+    text = "the share of pairs with equal seeds whose verdict differs (default: the size of the difference)"
+    plan.add_argument("--discordance", metavar="P", type=float, help=text)
+    plan.add_argument("--power", metavar="P", type=_between, default=0.8, help="probability to show it (default: 0.8)")
+    plan.add_argument("--level", metavar="P", type=_between, default=0.95, help="confidence level (default: 0.95)")
+    plan.set_defaults(command=_plan)
+
+
+def _between(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0.5 <= number < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' must be a number from 0.5 to less than 1, for example 0.95")
+    return number
 
 
 def _allow_store(parser: TakesArguments) -> None:
@@ -63,3 +86,10 @@ def _export(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.study import export_rows
 
     return export_rows(options.path, options.output, options.store)
+
+
+def _plan(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.study_plan import PlanOptions, print_plan
+
+    shares = (options.rate, options.width, options.difference, options.discordance, options.power, options.level)
+    return print_plan(PlanOptions(*shares))
