@@ -46,7 +46,7 @@ def test_each_feature_that_is_compared_is_linked_to_a_file_of_tests() -> None:
 
 def test_each_command_has_its_row() -> None:
     assert {"check", "run", "doctor"} <= command_names()
-    table = (ROOT / "README.md").read_text(encoding="utf-8")
+    table = (DOCS / "overview.md").read_text(encoding="utf-8")
     assert [command for command in command_names() if f"`robbdd {command}" not in table] == []
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 SECTIONS = {
-    "Start": ("tutorial", "playground"),
+    "Start": ("tutorial", "overview", "playground"),
     "How to": (
         *(
             "running",
