@@ -3,7 +3,6 @@ import { after, describe } from "node:test";
 import { SharedWindow } from "./harness/story.mjs";
 import { editing } from "./stories/editing.mjs";
 import { edits } from "./stories/edits.mjs";
-import { example } from "./stories/example.mjs";
 import { graph } from "./stories/graph.mjs";
 import { preview } from "./stories/preview.mjs";
 import { verdicts } from "./stories/verdicts.mjs";
@@ -12,6 +11,6 @@ const window = new SharedWindow();
 
 after(() => window.close());
 
-for (const story of [preview, graph, editing, edits, verdicts, example]) {
+for (const story of [preview, graph, editing, edits, verdicts]) {
   describe(story.name, () => story(window));
 }
