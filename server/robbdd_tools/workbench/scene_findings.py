@@ -17,6 +17,7 @@ from robbdd_tools.base.limits import SCENE_SECONDS
 from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import describe_exit
+from robbdd_tools.base.srdf import srdf_files
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
@@ -109,7 +110,9 @@ def file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]
 
 def _files(model: ModelSource) -> Iterator[Path]:
     if model.kind == "file" and model.origin is not None:
-        yield from model_files(Path(model.origin.file).parent / Path(model.name).expanduser())
+        path = Path(model.origin.file).parent / Path(model.name).expanduser()
+        yield from model_files(path)
+        yield from srdf_files(path)
 
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:

@@ -22,13 +22,17 @@ SUCTION_FORCE = 42.0
 
 
 class GripperParts:
-    """The parts of a gripper in the engine's editable description of an arm: the body ``palm`` and all beyond it."""
+    """The parts of a gripper in the engine's editable description of an arm: the body ``palm`` and all beyond it.
 
-    def __init__(self, spec: Any, source: ModelSource, arm: ArmModel, palm: str) -> None:
+    Errors end with ``note``.
+    """
+
+    def __init__(self, spec: Any, source: ModelSource, arm: ArmModel, palm: str, note: str = "") -> None:
         self.spec = spec
         self.source = source
         self.arm = arm
         self.palm = palm
+        self._note = note
 
     @property
     def bodies(self) -> list[Any]:
@@ -43,7 +47,7 @@ class GripperParts:
 
     def error(self, text: str) -> SceneError:
         """Return an error about the gripper."""
-        return SceneError(f"the gripper of {self.source.name} {text}", origin=self.source.origin)
+        return SceneError(f"the gripper of {self.source.name} {text}{self._note}", origin=self.source.origin)
 
     def compiled(self) -> Any:
         """Return the compiled model of the arm. Raises ``SceneError``."""

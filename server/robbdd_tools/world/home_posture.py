@@ -11,7 +11,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.self_collision import NEAR
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
@@ -34,15 +34,21 @@ SAME = 0.1
 
 
 def find_home(
-    model: Any, source: ModelSource, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str
+    model: Any,
+    source: ModelSource,
+    joints: tuple[str, ...],
+    tool: str,
+    fingers: dict[str, float],
+    palm: str,
+    named: Iterable[Mapping[str, float]] = (),
 ) -> tuple[float, ...]:
     """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best one of a search.
 
-    ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Raises ``SceneError`` if the
-    arm has no such posture.
+    ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Positions of joints that are
+    ``named`` elsewhere count like key frames. Raises ``SceneError`` if the arm has no such posture.
     """
     search = _Search(model, joints, tool, fingers, palm)
-    for posture in search.key_frames():
+    for posture in (*search.key_frames(), *search.complete(joints, named)):
         if search.points_down(posture):
             return tuple(posture.tolist())
     found = max(_different(search.postures()), key=search.quality, default=None)
@@ -82,8 +88,19 @@ class _Search:
         named = sorted(range(self._model.nkey), key=lambda key: "home" not in str(self._model.key(key).name))
         for posture in (self._model.key_qpos[key] for key in named):
             values: FloatArray = posture[self._places]
-            if np.all((values >= self._low - 1e-6) & (values <= self._high + 1e-6)):
+            if self._is_inside(values):
                 yield values.copy()
+
+    def complete(self, joints: tuple[str, ...], named: Iterable[Mapping[str, float]]) -> Iterator[FloatArray]:
+        """Yield the named postures that have a position within the limits for each joint."""
+        for positions in named:
+            if all(joint in positions for joint in joints):
+                values = np.array([positions[joint] for joint in joints])
+                if self._is_inside(values):
+                    yield values
+
+    def _is_inside(self, values: FloatArray) -> bool:
+        return bool(np.all((values >= self._low - 1e-6) & (values <= self._high + 1e-6)))
 
     def points_down(self, posture: FloatArray) -> bool:
         """Return whether the tool points down in a posture, in front of the base and free of self-collisions."""

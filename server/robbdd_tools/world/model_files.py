@@ -47,7 +47,7 @@ def load(source: ModelSource) -> Any:
     """Return the engine's editable description of a model; raises ``SceneError``."""
     if source.kind == "python":
         return _from_code(source)
-    path = _path(source)
+    path = path_of(source)
     if not path.exists():
         raise SceneError(f"there is no model file {path}", origin=source.origin)
     problem = unusable(path)
@@ -77,11 +77,12 @@ def _read_made(path: Path) -> Any:
 
 def velocity_limits(source: ModelSource, joints: Sequence[str], default: float) -> tuple[float, ...]:
     """Return the speed limits (rad/s, m/s) of joints in a URDF file; ``default`` where there is none."""
-    stated = speeds(_path(source)) if source.kind in ("file", "ros") else {}
+    stated = speeds(path_of(source)) if source.kind in ("file", "ros") else {}
     return tuple(stated.get(joint) or default for joint in joints)
 
 
-def _path(source: ModelSource) -> Path:
+def path_of(source: ModelSource) -> Path:
+    """Return the path of a model file; raises ``SceneError`` if its ROS package is not found."""
     path = Path(source.name).expanduser()
     if source.kind == "ros":
         share, reason = package_share(source.package)

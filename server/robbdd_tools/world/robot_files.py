@@ -16,6 +16,7 @@ from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
 from robbdd_tools.world.home_posture import find_home
 from robbdd_tools.world.model_files import compiled, load, velocity_limits
+from robbdd_tools.world.srdf_semantics import apply_srdf
 from robbdd_tools.world.urdf_files import HIDDEN
 
 if TYPE_CHECKING:
@@ -59,12 +60,15 @@ def _read_once(source: ModelSource, name: str) -> RobotModel:
 
 
 def _read_robot(source: ModelSource, name: str) -> RobotModel:
-    arm = source.arm or ArmModel()
+    stated = source.arm or ArmModel()
     spec = load(source)
     _clear(spec, source)
-    chain = _chain_to_palm(spec, source, arm)
+    semantics = apply_srdf(spec, source)
+    arm = semantics.complete(spec, stated)
+    uses_group = semantics.palm and not stated.pads and not stated.tool
+    chain = _path(spec.body(semantics.palm)) if uses_group else _chain_to_palm(spec, source, arm)
     joints = _joints(source, chain)
-    parts = GripperParts(spec, source, arm, str(chain[-1].name))
+    parts = GripperParts(spec, source, arm, str(chain[-1].name), semantics.note(stated, arm))
     parts.name_geoms()
     gripper = GripperReader(parts).read()
     tool = _tool(spec, source, arm.tool, gripper, chain[-1])
@@ -74,7 +78,15 @@ def _read_robot(source: ModelSource, name: str) -> RobotModel:
         body.gravcomp = 1.0 if body.name != "world" else 0.0
     model = compiled(spec, source)
     velocity = arm.velocity or velocity_limits(source, joints, SPEED)
-    home = arm.home or find_home(model, source, joints, tool, dict(gripper.open_joints), chain[-1].name)
+    home = arm.home or find_home(
+        model,
+        source,
+        joints,
+        tool,
+        dict(gripper.open_joints),
+        chain[-1].name,
+        [one.positions for one in semantics.homes],
+    )
     for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"

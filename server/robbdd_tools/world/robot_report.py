@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.base.srdf import srdf_files
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.catalog.executable import ArmModel
 from robbdd_tools.world.composition import COLUMN
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
-from robbdd_tools.world.model_files import velocity_limits
+from robbdd_tools.world.model_files import path_of, velocity_limits
 from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.srdf_semantics import file_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import RobotModel
@@ -38,6 +40,8 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     mass = sum(float(model.body_mass[body]) for body in _bodies(model, name))
     yield f"an arm of {len(robot.joints)} joints with {fingers}, {mass:.3g} kg"
     yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
+    if source is not None:
+        yield from _semantic_description(source)
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
@@ -137,12 +141,29 @@ def _table(rows: list[list[str]]) -> Iterator[str]:
         yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
 
 
+def _semantic_description(source: ModelSource) -> Iterator[str]:
+    """Yield which SRDF file is used; several of one robot are not."""
+    srdf = file_of(source)
+    if srdf is not None:
+        yield f"semantic description: {srdf.path.name}, {len(srdf.apart)} pairs of links without collisions"
+        return
+    several = ", ".join(path.name for path in srdf_files(path_of(source))) if source.kind in ("file", "ros") else ""
+    if several:
+        lacks = f"none is used, since several describe this robot ({several}): name one like the URDF file"
+        yield f"semantic description: {lacks}"
+
+
 def _origin_of_home(simulation: Simulation, name: str, source: ModelSource | None) -> str:
     model, robot = simulation.model, simulation.robots[name]
     if source is None:
         return "of the catalog"
     homes: Any = model.key_qpos[:, robot.joints]
     key = next((key for key in range(model.nkey) if np.allclose(homes[key], robot.model.home, atol=1e-4)), None)
+    srdf = file_of(source)
+    own = dict(zip(robot.model.joints, robot.model.home, strict=True))
+    for state in srdf.states if srdf is not None and key is None else ():
+        if all(abs(state.positions.get(joint, np.inf) - value) < SAME for joint, value in own.items()):
+            return f"state '{state.name}' of the SRDF file"
     if key is None:
         return "found by a search: the tool points down, the arm reaches far"
     return f"key frame '{str(model.key(key).name).rpartition('/')[2]}' of the file"
