@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -55,6 +56,20 @@ def test_without_graphics_the_report_is_printed_all_the_same(
     assert "1 rad/s (assumed)" in said.out
     assert "nothing here can render without a display: install EGL" in said.err
     assert not (tmp_path / "arm.png").exists()
+
+
+def test_an_inertia_that_no_body_can_have_is_named_and_does_not_stop_the_arm(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wrong = re.sub(r'(<link name="carriage">.*?)izz="0.01"', r'\1izz="0.03"', strangers.GANTRY)
+    path = write(tmp_path, wrong)
+    main(["view", "--robot", str(path), "-o", str(tmp_path / "arm.png")])
+    said = capsys.readouterr().out
+    assert "an arm of 4 joints with two fingers, " in said
+    assert "replaced by the mean of their principal moments: carriage\n" in said
+    write(tmp_path, strangers.GANTRY)
+    main(["view", "--robot", str(path), "-o", str(tmp_path / "arm.png")])
+    assert "principal moments" not in capsys.readouterr().out
 
 
 def test_an_arm_that_cannot_be_used_and_a_missing_file_are_reported(

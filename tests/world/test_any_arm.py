@@ -84,6 +84,12 @@ def test_a_mimic_joint_follows_and_the_speeds_of_a_urdf_file_count(tmp_path: Pat
     assert (found.gripper_actuator, found.stroke) == ("grip", pytest.approx(0.08, abs=1e-3))
 
 
+def test_joints_of_transmissions_do_not_hide_the_speeds(tmp_path: Path) -> None:
+    drive = '<transmission name="drive"><joint name="z"><hardwareInterface>x</hardwareInterface></joint></transmission>'
+    found = robot(tmp_path, strangers.GANTRY.replace("</robot>", f"{drive}</robot>"))
+    assert found.velocity_limits == (0.8, 0.8, 0.5, 2.5)
+
+
 def test_a_cup_is_found_by_its_vacuum_or_by_the_face_that_is_named(tmp_path: Path) -> None:
     for text, arm in ((strangers.VACUUM, None), (strangers.CUP_ONLY, ArmModel(pads=("cup",), stroke=0.024))):
         found = robot(tmp_path, text, arm)

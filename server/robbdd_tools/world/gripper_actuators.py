@@ -54,7 +54,8 @@ class GripperParts:
         try:
             return self.spec.copy().compile()
         except ValueError as error:
-            reason = f"the model {self.source.name} does not compile: {error}"
+            words = " ".join(str(error).split())  # the engine's messages have several lines
+            reason = f"the model {self.source.name} does not compile: {words}"
             raise SceneError(reason, origin=self.source.origin) from error
 
     def name_geoms(self) -> None:

@@ -170,7 +170,8 @@ def compiled(spec: Any, source: ModelSource) -> Any:
     try:
         return spec.copy().compile()
     except ValueError as error:
-        raise SceneError(f"the model {source.name} does not compile: {error}", origin=source.origin) from error
+        words = " ".join(str(error).split())
+        raise SceneError(f"the model {source.name} does not compile: {words}", origin=source.origin) from error
 
 
 def _body(model: Any, source: ModelSource, name: str) -> int:

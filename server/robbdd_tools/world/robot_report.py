@@ -19,6 +19,7 @@ from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.model_files import path_of, velocity_limits
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.srdf_semantics import file_of
+from robbdd_tools.world.urdf_files import impossible_inertias
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import RobotModel
@@ -42,6 +43,9 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
     if source is not None:
         yield from _semantic_description(source)
+        unusual = ", ".join(impossible_inertias(path_of(source))) if source.kind in ("file", "ros") else ""
+        if unusual:
+            yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (

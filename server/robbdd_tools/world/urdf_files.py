@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+
+import numpy as np
 
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.model_paths import mesh_places
@@ -12,6 +15,8 @@ from robbdd_tools.world.engine import mujoco
 
 READABLE = (".stl", ".obj", ".msh")
 """Mesh formats that the engine reads."""
+ROUNDED = 1e-9
+"""Share of the largest moment up to which rounding explains that it exceeds the others."""
 HIDDEN = 3
 """Group of geoms that pictures leave out."""
 
@@ -43,6 +48,8 @@ def read_urdf(path: Path) -> Any:
         settings = ElementTree.SubElement(root, "mujoco")
         ElementTree.SubElement(settings, "compiler", {"discardvisual": "false", "strippath": "false"})
     spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+    # The engine refuses inertias that no body can have; drivers of real arms never read them.
+    spec.compiler.balanceinertia = True
     for body in spec.bodies:
         shown = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
         for geom in body.geoms if shown else ():
@@ -57,8 +64,29 @@ def speeds(path: Path) -> dict[str, float]:
         root = ElementTree.fromstring(load_bytes(path))
     except ElementTree.ParseError:
         return {}
-    found = {joint.get("name", ""): joint.find("limit") for joint in root.iter("joint") if root.tag == "robot"}
+    # Elements 'joint' of transmissions have the names of joints, too, but no limits.
+    joints = root.findall("joint") if root.tag == "robot" else ()
+    found = {joint.get("name", ""): joint.find("limit") for joint in joints}
     return {name: float(limit.get("velocity", 0.0)) for name, limit in found.items() if limit is not None}
+
+
+def impossible_inertias(path: Path) -> Iterator[str]:
+    """Yield the links of a URDF file with an inertia that no body can have: one principal moment exceeds the others.
+
+    The engine replaces the three principal moments of such a link by their mean.
+    """
+    try:
+        root = ElementTree.fromstring(load_bytes(path))
+    except ElementTree.ParseError:
+        return
+    for link in root.iter("link") if root.tag == "robot" else ():
+        inertia = link.find("inertial/inertia")
+        if inertia is None:
+            continue
+        xx, xy, xz, yy, yz, zz = (float(inertia.get(name, 0)) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+        low, middle, high = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).tolist()
+        if low + middle < high * (1 - ROUNDED):
+            yield link.get("name", "")
 
 
 def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element) -> None:
