@@ -58,6 +58,11 @@ def test_without_graphics_the_report_is_printed_all_the_same(
     assert not (tmp_path / "arm.png").exists()
 
 
+def test_it_counts_the_fingers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["view", "--robot", str(write(tmp_path, strangers.THUMB)), "-o", str(tmp_path / "arm.png")])
+    assert "an arm of 4 joints with three fingers, " in capsys.readouterr().out
+
+
 def test_an_inertia_that_no_body_can_have_is_named_and_does_not_stop_the_arm(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

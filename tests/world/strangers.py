@@ -30,6 +30,25 @@ SCARA = f"""<mujoco model="scara">
 <position name="gb" joint="jb" kp="2000" kv="50" forcerange="-20 20" ctrlrange="-.035 0"/></actuator></mujoco>"""
 
 
+_SINGLE = SCARA[SCARA.index('<body name="fb"') : SCARA.index("</body></body></body></body></body></worldbody>")]
+
+
+def _beside(number: int, aside: str) -> str:
+    body = _SINGLE.replace('"fb"', f'"fb{number}"').replace('"jb"', f'"jb{number}"')
+    return body.replace('pos="0 -.003 -.06"', f'pos="{aside} -.003 -.06"').replace('size=".01', 'size=".006')
+
+
+THUMB = re.sub(
+    '<position name="gb".*?/>',
+    "".join(
+        f'<position name="gb{number}" joint="jb{number}" kp="2000" kv="50" forcerange="-20 20" ctrlrange="-.035 0"/>'
+        for number in (1, 2)
+    ),
+    SCARA.replace(_SINGLE, _beside(1, "-.009") + _beside(2, ".009")),
+)
+"""The same arm with a thumb and two fingers, each with an actuator."""
+
+
 def _finger(side: str, sign: int) -> str:
     return (
         f'<body name="{side}f" pos="0 {sign * 0.02} .03"><joint name="j{side}" axis="{sign} 0 0" range="-40 25" '
@@ -62,6 +81,17 @@ SIX = f"""<mujoco model="six">
 <equality><joint joint1="jl" joint2="jr"/></equality>
 <actuator>{_DRIVES}<general name="fingers" tendon="split" ctrlrange="0 255" gainprm=".05" biastype="affine"
  biasprm="-6 -12 -.2" forcerange="-4 4"/></actuator></mujoco>"""
+
+_JAWS = "".join(
+    f'<body euler="0 0 {120 * number}">{_finger(side, 1)}</body>'.replace('size=".01 .004', 'size=".006 .004')
+    for number, side in enumerate("abc")
+)
+JAWS = (
+    SIX.replace(_finger("l", 1) + _finger("r", -1), _JAWS)
+    .replace('<joint joint="jl" coef=".5"/><joint joint="jr" coef=".5"/>', '<joint joint="ja" coef="1"/>')
+    .replace('<joint joint1="jl" joint2="jr"/>', '<joint joint1="jb" joint2="ja"/><joint joint1="jc" joint2="ja"/>')
+)
+"""The same arm with three rotating fingers around the hand."""
 
 _CUP = '<body name="cup" pos="0 0 .06"><geom type="cylinder" size=".012 .03" mass=".05"/></body>'
 _BARE = re.sub(r"<tendon>.*</equality>|<general name=.fingers.*?/>", "", SIX, flags=re.DOTALL)

@@ -25,7 +25,7 @@ from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.motion import ToolPose, frame_of
-from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.robot_files import prepared_robot, robot_from
 from robbdd_tools.world.staging import Staging
 from world import strangers
 from world.arms import MJCF
@@ -55,7 +55,9 @@ def picking(folder: Path, text: str) -> Execution:
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("text", [strangers.SCARA, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF])
+@pytest.mark.parametrize(
+    "text", [strangers.SCARA, strangers.THUMB, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF]
+)
 def test_an_arm_picks_and_places_with_the_data_in_its_file_alone(tmp_path: Path, text: str) -> None:
     run = picking(tmp_path, text)
     assert run.run_behaviour(0), run.trace.remark
@@ -75,6 +77,28 @@ def test_a_gripper_that_opens_at_zero_and_closes_at_255_is_understood(tmp_path: 
     found = robot(tmp_path, strangers.SIX)
     assert (found.gripper_open, found.gripper_closed, found.pads) == (0.0, 255.0, ("lpad", "rpad"))
     assert finger_motion(found).rate == pytest.approx(255 / (found.stroke / 2), rel=0.01)
+
+
+def test_a_thumb_closes_on_two_fingers_that_are_one_face(tmp_path: Path) -> None:
+    found = robot(tmp_path, strangers.THUMB)
+    thumb, beside = finger_motion(found).faces
+    spec = prepared_robot(found.mjcf)
+    assert spec is not None
+    assert [spec.geom(name).parent.name for name in (*thumb, *beside)] == ["fa", "fb1", "fb2"]
+    assert (len(thumb), len(beside)) == (1, 2)
+    assert found.stroke == pytest.approx(0.07, abs=1e-3)
+
+
+def test_three_rotating_fingers_around_a_hand_are_two_faces(tmp_path: Path) -> None:
+    first, others = finger_motion(robot(tmp_path, strangers.JAWS)).faces
+    assert "apad" in first
+    assert {"bpad", "cpad"} <= {*others}
+    assert not {"bpad", "cpad"} & {*first}
+
+
+def test_the_roots_of_fingers_do_not_narrow_the_opening(tmp_path: Path) -> None:
+    """The roots of the three fingers stay 23 mm apart; at their tips, a cube of 70 mm fits between them."""
+    assert robot(tmp_path, strangers.JAWS).stroke > 0.07
 
 
 def test_a_mimic_joint_follows_and_the_speeds_of_a_urdf_file_count(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Gripping faces of two fingers, found by where their parts are when the gripper is open and closed."""
+"""Gripping faces of two and more fingers, found by where their parts are when the gripper is open and closed."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ NEVER_MEET = 0.02
 """Distance (m) between closed faces from which on a gripper cannot hold the catalog's smallest object, 31.5 mm."""
 TIPS = 0.8
 """Share of the largest such change from which on a shape of the same finger belongs to its gripping face."""
+OPPOSITE = -0.35
+"""Cosine of the angle between opposite movements: three rotating fingers around a hand are 110° to 120° apart."""
 OPENS = 0.015
 """Smallest opening (m) of fingers: parts of a linkage that approach each other by less are none."""
 LEVEL = 0.003
@@ -34,8 +36,9 @@ SMOOTH = 0.01
 def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, FloatArray]) -> Faces:
     """Return the shapes of the two fingers that approach each other most and meet; nothing without such fingers.
 
-    ``bodies`` are those of the gripper, the palm first. ``states`` are the joint positions of the model at the two ends
-    of the actuator's values.
+    A further finger that closes on one of the two, like the second finger beside a thumb, belongs to the face of the
+    other one. ``bodies`` are those of the gripper, the palm first. ``states`` are the joint positions of the model at
+    the two ends of the actuator's values.
     """
     palm = bodies[0]
     fingers = _fingers(model, bodies)
@@ -52,12 +55,28 @@ def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, Floa
     ]
     # One finger may close on the palm.
     pairs = apart or [(one, base) for one in moving if base in fingers]
-    best, largest = Faces(), OPENS
+    tips: dict[tuple[int, int], tuple[float, Faces]] = {}
     for one, other in pairs:
-        change, faces = _tips(model, _names_of(model, fingers[one]), _names_of(model, fingers[other]), states)
-        if change > largest + 1e-6:
-            best, largest = faces, change
-    return best
+        tips[one, other] = _tips(model, _names_of(model, fingers[one]), _names_of(model, fingers[other]), states)
+    best = max(tips, key=lambda pair: round(tips[pair][0], 6), default=None)
+    if best is None or tips[best][0] <= OPENS:
+        return ()
+    largest, faces = tips[best]
+    for side, opposite in ((1, best[0]), (0, best[1])):
+        beside = [pair for pair in apart if opposite in pair and pair != best]
+        for pair in beside:
+            change, found = tips[pair]
+            third = pair[1 - pair.index(opposite)]
+            own = found[pair.index(third)]
+            if change >= TIPS * largest and branch[third] not in {branch[one] for one in best} and own:
+                faces = _extended(faces, side, own)
+    return faces
+
+
+def _extended(faces: Faces, side: int, names: Sequence[str]) -> Faces:
+    """Return the faces with shapes added to one of them, unless a face has them."""
+    new = tuple(name for name in names if _new(faces, name))
+    return tuple((*face, *new) if number == side else face for number, face in enumerate(faces))
 
 
 def _fingers(model: Any, bodies: Sequence[int]) -> dict[int, list[int]]:
@@ -84,8 +103,23 @@ def _tips(
     largest = max((change for change, _ in changes.values()), default=0.0)
     moved = {names: near for names, (change, near) in changes.items() if change >= TIPS * largest}
     nearest = min(moved.values(), default=0.0)
-    tips = [names for names, near in moved.items() if near <= nearest + LEVEL]
-    return largest, (tuple(dict.fromkeys(name for name, _ in tips)), tuple(dict.fromkeys(name for _, name in tips)))
+    level = [names for names, near in moved.items() if near <= nearest + LEVEL]
+    return largest, _together(model, sorted(level, key=lambda names: -changes[names][0]), states, TIPS * largest)
+
+
+def _together(model: Any, pairs: Sequence[tuple[str, str]], states: Mapping[float, FloatArray], change: float) -> Faces:
+    """Return two faces made of pairs of shapes, without those that narrow the opening: a finger's root moves little."""
+    faces: Faces = ((), ())
+    for pair in pairs:
+        wider = tuple((*face, *_new(faces, name)) for face, name in zip(faces, pair, strict=True))
+        near, far = sorted(max(0.0, gap(model, state, wider)) for state in states.values())
+        if far - near >= change:
+            faces = wider
+    return faces
+
+
+def _new(faces: Faces, name: str) -> tuple[str, ...]:
+    return () if any(name in face for face in faces) else (name,)
 
 
 def _movements(model: Any, states: Mapping[float, FloatArray]) -> FloatArray:
@@ -102,7 +136,7 @@ def _movements(model: Any, states: Mapping[float, FloatArray]) -> FloatArray:
 def _approach(one: FloatArray, other: FloatArray) -> bool:
     """Return whether two movements (m) are opposite, or one of them is none."""
     lengths = float(np.linalg.norm(one)), float(np.linalg.norm(other))
-    return min(lengths) < MOVES / 4 or float(one @ other) <= -0.5 * lengths[0] * lengths[1]
+    return min(lengths) < MOVES / 4 or float(one @ other) <= OPPOSITE * lengths[0] * lengths[1]
 
 
 def _joints_to(model: Any, body: int, palm: int) -> int:

@@ -30,6 +30,7 @@ NUMBERED = re.compile(r"(actuator|joint)\d+")
 """Names that actuators and joints without a name get."""
 FOUND = "robbdd-"
 """Prefix of names that files of arms do not have: they are added where a part has no name, and to what was found."""
+NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 SAME = 1e-3
 """Difference (rad, m) of the joints of an open gripper up to which it is the same one."""
 
@@ -37,7 +38,8 @@ SAME = 1e-3
 def report(simulation: Simulation, name: str, source: ModelSource | None) -> Iterator[str]:
     """Yield the lines of a report on an agent. ``source`` is the file of its model, ``None`` for one of the catalog."""
     robot, model = simulation.robots[name].model, simulation.model
-    fingers = "a suction cup" if robot.gripper is GripperKind.SUCTION else "two fingers"
+    is_cup = robot.gripper is GripperKind.SUCTION
+    fingers = "a suction cup" if is_cup else _fingers(model, name, robot)
     mass = sum(float(model.body_mass[body]) for body in _bodies(model, name))
     yield f"an arm of {len(robot.joints)} joints with {fingers}, {mass:.3g} kg"
     yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
@@ -49,10 +51,16 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
-        f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'wide' if fingers == 'two fingers' else 'across'}"
+        f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'across' if is_cup else 'wide'}"
     )
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
     yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
+
+
+def _fingers(model: Any, name: str, robot: RobotModel) -> str:
+    """Return the number of fingers that have gripping faces, in words."""
+    carriers = {int(model.body_weldid[int(model.geom(f"{name}/{pad}").bodyid[0])]) for pad in robot.pads}
+    return f"{NUMBERS.get(len(carriers), len(carriers))} fingers"
 
 
 def as_stated(robot: RobotModel, name: str, source: ModelSource) -> ArmModel:
