@@ -53,6 +53,15 @@ def test_the_page_of_the_command_line_is_that_of_the_program() -> None:
     assert page == printed, "run .venv/bin/python docs/site/command_line.py"
 
 
+def test_the_page_of_the_grammar_is_that_of_the_grammars() -> None:
+    program = [sys.executable, "-c", "import language; print(language.page(), end='')"]
+    printed = subprocess.run(program, cwd=DOCS / "site", capture_output=True, text=True, check=True).stdout
+    page = (DOCS / "language" / "grammar.md").read_text(encoding="utf-8")
+    assert page == printed, "run .venv/bin/python docs/site/language.py"
+    rows = {line.split("`")[1] for line in page.splitlines() if line.startswith("| `")}
+    assert {"const", "permutations", "comp", "kgraph", "exists"} <= rows
+
+
 def test_each_page_has_its_place_in_the_table_of_contents() -> None:
     source = (DOCS / "site" / "pages.py").read_text(encoding="utf-8")
     pages = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}

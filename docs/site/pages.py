@@ -31,7 +31,15 @@ SECTIONS = {
         *("gherkin", "pytest", "python", "troubleshooting"),
     ),
     "Examples": (),
-    "Reference": ("command-line", "semantics", "diagnostics/README", "python-reference", "graph", "limits"),
+    "Reference": (
+        "command-line",
+        "language/grammar",
+        "semantics",
+        "diagnostics/README",
+        "python-reference",
+        "graph",
+        "limits",
+    ),
     "Explanation": ("language/design", "compatibility", "graph-differences"),
     "Project": ("performance", "reliability", "mutants", "ARCHITECTURE", "CONTRIBUTING", "SECURITY"),
 }
