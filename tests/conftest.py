@@ -22,6 +22,11 @@ settings.register_profile(
 settings.load_profile("robbdd")
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """One worker more than there are processors: some tests mostly wait for other processes."""
+    return (os.cpu_count() or 1) + 1
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave the long forms of tests to ``make nightly``, which asks for their marker."""
     if "nightly" in str(config.getoption("markexpr")):

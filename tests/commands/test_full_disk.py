@@ -6,15 +6,14 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, fill_disk, small_disk
 
 pytestmark = pytest.mark.physics
-ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
 MODEL = "pickplace.bdd"
 GATE = "ROBBDD_TEST_GATE"
 WAITING = f"""import os, time

@@ -15,12 +15,14 @@ from typing import Any
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, default_signals, make_endless, schema_errors
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RunStore
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="Windows has no POSIX signals")]
-ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
+INTERPRETER = [sys.executable, "-m", "robbdd_tools.cli"]
+"""What signals and closed pipes reach."""
 MODEL = "pickplace.bdd"
 
 
@@ -32,7 +34,7 @@ def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     pipe = subprocess.PIPE
-    command = [*ROBBDD, *arguments]
+    command = [*INTERPRETER, *arguments]
     return subprocess.Popen(command, stdout=pipe, stderr=pipe, encoding="utf-8", cwd=folder, preexec_fn=default_signals)
 
 
@@ -188,7 +190,7 @@ def test_a_closed_pipe_costs_the_output_only(tmp_path: Path) -> None:
     for path in (EXAMPLES / "pickplace").iterdir():
         if path.is_file():
             shutil.copy(path, tmp_path)
-    command = f"{' '.join(ROBBDD)} run {MODEL} --json out.json | head -1; exit ${{PIPESTATUS[0]}}"
+    command = f"{' '.join(INTERPRETER)} run {MODEL} --json out.json | head -1; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, encoding="utf-8", cwd=tmp_path)
     assert done.returncode == 0
     assert "Traceback" not in done.stderr

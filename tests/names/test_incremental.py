@@ -28,10 +28,10 @@ from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project
 
-IN_CI = 200
+IN_CI = 125
 SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", IN_CI))
-FEWEST = 10
-"""Edits of a sequence, at least."""
+LENGTH = 16
+"""Edits of a sequence."""
 
 
 def _texts() -> list[dict[str, str]]:
@@ -89,7 +89,7 @@ def known(project: Project, uri: str) -> object:
 
 
 @settings(max_examples=SEQUENCES, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-@given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=FEWEST, max_size=16))
+@given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=LENGTH, max_size=LENGTH))
 def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list[Edit]) -> None:
     folder = Path("/fuzz")
     files = {path_to_uri(folder / name): text for name, text in texts.items()}
@@ -108,7 +108,7 @@ def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list
 
 
 def test_there_are_enough_edits_without_asking_for_more() -> None:
-    assert IN_CI * FEWEST >= 2000
+    assert IN_CI * LENGTH >= 2000
 
 
 @pytest.mark.parametrize(
