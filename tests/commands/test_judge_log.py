@@ -3,37 +3,20 @@
 from __future__ import annotations
 
 import json
-import math
-import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from fork_kit import ROBBDD
-from kit import EXAMPLES, schema_errors
-from logs.bags import ROS2, Message, detected, goals, text, transform, truth, write
+from kit import EXAMPLES
+from logs.bags import ROS2, Message, detected, goals, write
+from logs.drives import ONE, clauses, drive, judged, robbdd, verdicts
 
 pytestmark = pytest.mark.physics
 NOT_IN_A_LOG = {"can reach", "has config"}
 """Words of predicates on what a log does not contain."""
-ONE = ("--where", "thing=cube0 and goal=left_ws")
-
-
-def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run([*ROBBDD, *arguments], capture_output=True, encoding="utf-8", cwd=folder, env=os.environ)
-    assert "Traceback" not in done.stderr, done.stderr
-    return done
-
-
-def clauses(path: Path) -> list[dict[str, Any]]:
-    document = json.loads(path.read_text(encoding="utf-8"))
-    assert schema_errors("run.schema.json", document) == []
-    (scenario,) = document["scenarios"]
-    return scenario["clauses"]
 
 
 @pytest.mark.parametrize(
@@ -72,53 +55,6 @@ def test_a_bag_of_a_run_gives_its_verdicts_and_margins(example: str, model: str,
 @pytest.fixture(scope="module")
 def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return shutil.copytree(EXAMPLES / "pickplace", tmp_path_factory.mktemp("log") / "models")
-
-
-IN_BIN = (0.55, 0.3, 0.86)
-
-
-def drive(
-    lost: tuple[float, float] | None = None, end: tuple[float, float, float] = IN_BIN, cube: str = "cube0"
-) -> list[Message]:
-    """Write what a real cell would record, at 50 Hz for 10 s: a cube is carried from the table to a place.
-
-    From the first to the second time of ``lost``, the cube is not seen; ``cube`` is its frame.
-    """
-    found = [
-        transform("table", (0.5, 0.0, 0.8), stamp=0.0, topic="/tf_static"),
-        transform("bin_left", (0.55, 0.3, 0.8), stamp=0.0, topic="/tf_static"),
-        transform("bin_right", (0.55, -0.3, 0.8), stamp=0.0, topic="/tf_static"),
-        text("pick-start", 1.0),
-        text("pick-end", 3.0),
-        text("place-start", 6.0),
-        text("place-end", 8.0),
-        text("", 0.0, "/panda/holds"),
-        text("cube0", 2.9, "/panda/holds"),
-        text("", 7.9, "/panda/holds"),
-    ]
-    begin = (0.45, 0.0, 0.825)
-    for tick in range(501):
-        time = tick / 50
-        share = min(max((time - 3.0) / 4.0, 0.0), 1.0)
-        lift = 0.2 * math.sin(math.pi * share)
-        place = [one + share * (other - one) for one, other in zip(begin, end, strict=True)]
-        if lost is None or not lost[0] < time < lost[1]:
-            found.append(transform(cube, (place[0], place[1], place[2] + lift), stamp=time))
-        found.append(transform("panda", (place[0], place[1], place[2] + lift), stamp=time))
-    return found
-
-
-def judged(models: Path, folder: Path, messages: list[Message], *more: str) -> tuple[list[dict[str, Any]], str]:
-    shutil.rmtree(folder / "drive", ignore_errors=True)
-    bag = write(folder / "drive", messages)
-    out = folder / "log.json"
-    done = robbdd(models, "judge", str(bag), "pickplace.bdd", "--no-store", "--json", str(out), *ONE, *more)
-    assert done.returncode in (0, 1), done.stderr
-    return clauses(out), done.stderr
-
-
-def verdicts(found: list[dict[str, Any]]) -> dict[str, str]:
-    return {one["name"].rpartition(".")[2]: one["verdict"] for one in found}
 
 
 def test_a_drive_that_puts_the_cube_into_the_bin_holds(models: Path, tmp_path: Path) -> None:
@@ -234,80 +170,6 @@ def test_a_wrong_name_or_quantity_is_refused(option: str, value: str, words: str
     done = robbdd(models, "judge", str(bag), "pickplace.bdd", "--no-store", *ONE, f"{option}={value}")
     assert done.returncode == 2
     assert words in done.stderr
-
-
-ROBOT = """import "pickplace.bdd"
-import "bench.scenex"
-ns exec = 'https://example.org/robbdd/execution/'
-bhv impl (ns=exec) server { bhv action: "/pick" }
-obs provider (ns=exec) camera { ros transform listener reference-frame: "map" update-rate: 30 Hz }
-observation (ns=exec) things {
-    provider: <camera>
-    observes var <pick-place.thing>
-    observes var <pick-place.goal>
-    entity mapper: string { "object_7" to obj <cubes.cube0> }
-}
-obs policy (ns=exec) near-goal for <pick-place.at-goal> {
-    observations: { <things> }
-    evaluator: linear distance { less-than: 0.2 m }
-}
-obs policy (ns=exec) starts for <pick-place.at-source> { trinary topic: "/seen" }
-Scenario Exec (ns=exec) on-the-robot {
-    variant: <tidy-bench.part-to-bin>
-    scene inst: <bench_sim>
-    bhv: <server>
-    policies: { <near-goal>, <starts> }
-}
-"""
-
-
-@pytest.mark.parametrize(
-    ("seen", "verdict", "reason"),
-    [
-        ([(0.0, 1)], "holds", ""),
-        ([(0.0, 1), (0.9, 0)], "violated", ""),
-        ([(0.0, 1), (0.9, 2)], "unknown", "the topic '/seen' reports nothing known at 1.00 s"),
-        ([(2.0, 1)], "unknown", "the topic '/seen' reports nothing known at 1.00 s"),
-        ([], "unknown", "its verdicts come from the ROS topic '/seen', which the log does not have"),
-    ],
-)
-def test_the_observations_and_topics_of_an_execution_decide(
-    seen: list[tuple[float, int]], verdict: str, reason: str, models: Path, tmp_path: Path
-) -> None:
-    folder = shutil.copytree(models, tmp_path / "models")
-    (folder / "robot.bddx").write_text(ROBOT, encoding="utf-8")
-    bag = write(tmp_path / "drive", [*drive(cube="object_7"), *(truth("/seen", value, time) for time, value in seen)])
-    out = tmp_path / "log.json"
-    done = robbdd(folder, "judge", str(bag), "robot.bddx", "--no-store", "--json", str(out), *ONE)
-    assert done.returncode in (0, 1), done.stderr
-    found = {one["name"].rpartition(".")[2]: one for one in clauses(out)}
-    assert (found["at-source"]["verdict"], found["at-source"]["reason"]) == (verdict, reason)
-    assert found["at-goal"]["verdict"] == "holds"
-    # The bin's region is 0.06 m above its origin.
-    assert 0.1 < found["at-goal"]["robustness"] < 0.2
-
-
-@pytest.mark.parametrize(
-    ("root", "more", "verdict"),
-    [("map", (), "holds"), ("camera", (), "unknown"), ("camera", ("--world", "camera"), "holds")],
-)
-def test_a_scenex_places_what_the_log_lacks_if_the_frame_is_the_worlds(
-    root: str, more: tuple[str, ...], verdict: str, tmp_path: Path
-) -> None:
-    folder = shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "models")
-    # The bin stands at (0.4, 0.5, 0.1) m.
-    seen = [transform("cube0", (0.4, 0.5, 0.14), stamp=tick / 10, parent=root) for tick in range(101)]
-    bag = write(tmp_path / "drive", [*seen, text("place-end", 5.0)])
-    out = tmp_path / "log.json"
-    chosen = ("--scenario", "by-catalog", "--where", "thing=cube0")
-    done = robbdd(folder, "judge", str(bag), "tidy.bddx", "--no-store", "--json", str(out), *chosen, *more)
-    assert done.returncode in (0, 1), done.stderr
-    found = {one["name"].rpartition(".")[2]: one for one in clauses(out)}
-    assert found["at-goal"]["verdict"] == verdict, (found["at-goal"], done.stderr)
-    placed = "is not in the log, so it stands where the .scenex places it"
-    asked = "is not in the log, and the .scenex places it in the world: name the frame of the world with --world FRAME"
-    assert f"env:bin {placed if verdict == 'holds' else asked}" in done.stderr
-    assert "the log has no frame for env:cube0" not in done.stderr
 
 
 def test_a_log_of_several_scenarios_is_refused_with_their_values(models: Path, tmp_path: Path) -> None:
