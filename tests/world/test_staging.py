@@ -346,3 +346,16 @@ def test_code_makes_a_model(tmp_path: Path) -> None:
     made = replace(thing.models[0], kind="python", name="maker_of_blocks:block")
     staged = instance(link("x:g.cube.mid", (0.5, 0, 0.2)), elements=(replace(thing, models=(made,)),))
     assert world(staged).cast.objects[CUBE].mass == pytest.approx(0.05)
+
+
+def test_an_object_with_an_inertia_that_no_body_can_have_is_refused(tmp_path: Path) -> None:
+    """Only the links of arms, whose drivers never read it, get another one."""
+    shape = '<collision><geometry><box size=".03 .03 .03"/></geometry></collision>'
+    text = (
+        '<robot name="thing"><link name="block"><inertial><mass value="0.05"/>'
+        f'<inertia ixx="0.01" iyy="0.01" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial>{shape}</link></robot>'
+    )
+    made = file(tmp_path, CUBE, text).models[0]
+    thing = Realisation(CUBE, (replace(made, format="urdf"),))
+    with pytest.raises(SceneError, match=r"cell\.scenex:7:11: .*A \+ B >= C"):
+        world(instance(elements=(thing,)))

@@ -15,9 +15,9 @@ from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
 from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
 from robbdd_tools.world.home_posture import find_home
-from robbdd_tools.world.model_files import compiled, load, velocity_limits
-from robbdd_tools.world.srdf_semantics import apply_srdf
-from robbdd_tools.world.urdf_files import HIDDEN
+from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
+from robbdd_tools.world.srdf_semantics import apply_srdf, path_to
+from robbdd_tools.world.urdf_files import HIDDEN, is_urdf
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -62,11 +62,14 @@ def _read_once(source: ModelSource, name: str) -> RobotModel:
 def _read_robot(source: ModelSource, name: str) -> RobotModel:
     stated = source.arm or ArmModel()
     spec = load(source)
+    if source.kind in ("file", "ros") and is_urdf(path_of(source)):
+        # The engine refuses inertias that no body can have; drivers of real arms never read them.
+        spec.compiler.balanceinertia = True
     _clear(spec, source)
     semantics = apply_srdf(spec, source)
     arm = semantics.complete(spec, stated)
     uses_group = semantics.palm and not stated.pads and not stated.tool
-    chain = _path(spec.body(semantics.palm)) if uses_group else _chain_to_palm(spec, source, arm)
+    chain = path_to(spec.body(semantics.palm)) if uses_group else _chain_to_palm(spec, source, arm)
     joints = _joints(source, chain)
     parts = GripperParts(spec, source, arm, str(chain[-1].name), semantics.note(stated, arm))
     parts.name_geoms()
@@ -151,27 +154,19 @@ def _tool_body(spec: Any, source: ModelSource, name: str) -> Any:
     return body
 
 
-def _path(body: Any) -> list[Any]:
-    found: list[Any] = []
-    while body is not None and body.name != "world":
-        found.insert(0, body)
-        body = body.parent
-    return found
-
-
 def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
     """Return the bodies to the one that carries all gripping faces.
 
     Without stated faces, this is the first one from which several branches with joints lead on, or the last one, but
     not one beyond the stated tool.
     """
-    tool = _path(_tool_body(spec, source, arm.tool)) if arm.tool else []
+    tool = path_to(_tool_body(spec, source, arm.tool)) if arm.tool else []
     carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
-    paths = [[body.name for body in _path(one)] for one in carriers if one is not None]
+    paths = [[body.name for body in path_to(one)] for one in carriers if one is not None]
     if len(paths) > 1 and len(paths) == len(arm.pads):
         common = [name for name in paths[0] if all(name in path for path in paths)]
         if common:
-            return _path(spec.body(common[-1]))
+            return path_to(spec.body(common[-1]))
     body = spec.worldbody
     while True:
         branches = [child for child in body.bodies if _moves(child)]
@@ -189,7 +184,7 @@ def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
         )
         raise SceneError(text, origin=source.origin)
     common = {one.name for one in tool}
-    return [one for one in _path(body) if not tool or one.name in common]
+    return [one for one in path_to(body) if not tool or one.name in common]
 
 
 def _moves(body: Any) -> bool:

@@ -86,7 +86,7 @@ def apply_srdf(spec: Any, source: ModelSource) -> Semantics:
     effector, parent = effectors[0]
     gripper = groups[effector]
     palm = _palm(spec, gripper)
-    above = {str(joint.name) for body in _path(palm) for joint in body.joints}
+    above = {str(joint.name) for body in path_to(palm) for joint in body.joints}
     arms = [name for name, joints in groups.items() if joints and joints <= above]
     name = parent if parent in arms else max(arms, key=lambda one: len(groups[one]), default="")
     if not name or palm.name == "world":
@@ -107,6 +107,15 @@ def apply_srdf(spec: Any, source: ModelSource) -> Semantics:
     )
 
 
+def path_to(body: Any) -> list[Any]:
+    """Return the bodies from the base of a model to one of its bodies, without the world."""
+    found: list[Any] = []
+    while body is not None and body.name != "world":
+        found.insert(0, body)
+        body = body.parent
+    return found
+
+
 def _rank(state: State) -> int:
     return next((number for number, word in enumerate(HOMES) if word in state.name.lower()), len(HOMES))
 
@@ -121,7 +130,7 @@ def _joints(spec: Any, srdf: Srdf, name: str, seen: frozenset[str]) -> Iterator[
             yield joint
     bodies = [spec.body(link) for link in group.links]
     for base, tip in group.chains:
-        path = _path(spec.body(tip))
+        path = path_to(spec.body(tip))
         names = [str(body.name) for body in path]
         bodies += path[names.index(base) + 1 :] if base in names else path
     yield from (str(joint.name) for body in bodies if body is not None for joint in body.joints)
@@ -132,17 +141,9 @@ def _joints(spec: Any, srdf: Srdf, name: str, seen: frozenset[str]) -> Iterator[
 def _palm(spec: Any, joints: frozenset[str]) -> Any:
     """Return the last body that carries all of some joints and those that follow them."""
     following = {str(one.name1) for one in _couplings(spec) if one.name2 in joints}
-    paths = [_path(spec.joint(joint).parent.parent) for joint in joints | following]
+    paths = [path_to(spec.joint(joint).parent.parent) for joint in joints | following]
     common = [body for body in paths[0] if all(body.name in {str(one.name) for one in path} for path in paths)]
     return common[-1] if common else spec.worldbody
-
-
-def _path(body: Any) -> list[Any]:
-    found: list[Any] = []
-    while body is not None and body.name != "world":
-        found.insert(0, body)
-        body = body.parent
-    return found
 
 
 def _couplings(spec: Any) -> list[Any]:

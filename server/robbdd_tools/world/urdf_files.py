@@ -48,8 +48,6 @@ def read_urdf(path: Path) -> Any:
         settings = ElementTree.SubElement(root, "mujoco")
         ElementTree.SubElement(settings, "compiler", {"discardvisual": "false", "strippath": "false"})
     spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
-    # The engine refuses inertias that no body can have; drivers of real arms never read them.
-    spec.compiler.balanceinertia = True
     for body in spec.bodies:
         shown = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
         for geom in body.geoms if shown else ():
