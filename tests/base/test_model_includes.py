@@ -39,3 +39,12 @@ def test_a_missing_model_and_one_that_is_no_xml_have_no_includes(tmp_path: Path)
     assert problem.code == "file-missing"
     (tmp_path / "arm.xml").write_text("<mujoco><include file=")
     assert list(model_files(tmp_path / "arm.xml")) == [tmp_path / "arm.xml"]
+
+
+def test_an_srdf_file_beside_a_urdf_file_is_read_with_it(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text('<robot name="arm"/>')
+    (tmp_path / "arm.srdf").write_text('<robot name="arm"/>')
+    assert list(model_files(tmp_path / "arm.urdf")) == [tmp_path / "arm.urdf", tmp_path / "arm.srdf"]
+    (tmp_path / "arm.srdf").unlink()
+    make_fifo(tmp_path / "arm.srdf")
+    assert list(model_files(tmp_path / "arm.urdf")) == [tmp_path / "arm.urdf"]

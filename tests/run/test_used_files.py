@@ -11,6 +11,7 @@ from kit import EXAMPLES
 from robbdd_tools.cli import main
 from robbdd_tools.run.store import store_beside
 from robbdd_tools.run.used_files import changed
+from world.arms import URDF
 
 
 @pytest.fixture
@@ -51,3 +52,16 @@ def test_a_replay_names_the_files_that_were_changed(project: Path, capsys: pytes
     assert "1 of 1 traces are the same" in capsys.readouterr().out
     (project / "five.xml").unlink()
     assert [path.name for path in changed(known, run.folder)] == ["five.xml", "helper.py", "extra.xml"]
+
+
+@pytest.mark.physics
+def test_an_srdf_file_counts_also_if_it_came_after_the_run(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (project / "five.urdf").write_text(URDF, encoding="utf-8")
+    (scene,) = project.glob("*.scenex")
+    text = scene.read_text(encoding="utf-8").replace("five_model as mjcf", "five_model as urdf")
+    text = text.replace("'five.xml'", "'five.urdf'").replace('"grip"', '"left_slide"')
+    scene.write_text(text.replace('"left_pad", "right_pad"', '"left", "right"'), encoding="utf-8")
+    assert main(["run", "tidy.bddx", "--scenario", "by-our-code", "--first", "1"]) in (0, 1)
+    (project / "five.srdf").write_text('<robot name="five"/>', encoding="utf-8")
+    assert main(["replay", "1"]) == 2
+    assert "five.srdf was added since the run" in capsys.readouterr().err

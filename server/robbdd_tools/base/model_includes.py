@@ -1,4 +1,4 @@
-"""Find the files that an MJCF or URDF file makes its engine read: included models, meshes and textures."""
+"""Find the files that are read with an MJCF or URDF file: included models, meshes, textures and SRDF files."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from robbdd_tools.base.files import Unreadable, UnreadableFile, load_bytes, unreadable
+from robbdd_tools.base.srdf import srdf_files
 
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 """Attributes of MJCF and URDF that name folders to search for files."""
 
 
 def model_files(path: Path) -> Iterator[Path]:
-    """Yield a model file and the existing files that it names, each file once and of whatever kind."""
+    """Yield a model file, the existing files that it names and its SRDF files, each file once and of whatever kind."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:
@@ -24,6 +25,7 @@ def model_files(path: Path) -> Iterator[Path]:
         seen[current] = None
         yield current
         waiting += reversed(list(_named(current)))
+    yield from (one for one in srdf_files(path) if one not in seen)
 
 
 def unusable(path: Path) -> Unreadable | None:

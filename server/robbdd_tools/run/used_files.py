@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
 def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
     """Return the SHA-256 digest of each file that a run uses, by the path of the file relative to the run folder."""
-    found = dict.fromkeys(path.resolve() for path in _used(manifest))
-    return {Path(os.path.relpath(path, folder.resolve())).as_posix(): _digest(path) for path in sorted(found)}
+    return {name: _digest(path) for name, path in _named(manifest, folder).items()}
 
 
 def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
@@ -37,11 +36,21 @@ def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
     return [path for path, digest in zip(paths, known.values(), strict=True) if _digest(path) != digest]
 
 
+def added(known: Mapping[str, str], manifest: Manifest, folder: Path) -> list[Path]:
+    """Return the files that the manifest's scenarios would use now and that are not among those of ``digests``."""
+    return [path for name, path in _named(manifest, folder).items() if name not in known]
+
+
 def prepared_digest(folder: Path) -> str:
     """Return the SHA-256 digest of the prepared content of a run folder: the manifest, the features and their steps."""
     every = (path for path in (folder / FEATURES).rglob("*") if path.is_file() and path.suffix != ".pyc")
     found = {path.relative_to(folder).as_posix(): _digest(path) for path in (folder / MANIFEST, *every)}
     return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()
+
+
+def _named(manifest: Manifest, folder: Path) -> dict[str, Path]:
+    found = sorted({path.resolve() for path in _used(manifest)})
+    return {Path(os.path.relpath(path, folder.resolve())).as_posix(): path for path in found}
 
 
 def _digest(path: Path) -> str:

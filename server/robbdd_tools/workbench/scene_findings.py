@@ -17,7 +17,6 @@ from robbdd_tools.base.limits import SCENE_SECONDS
 from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import describe_exit
-from robbdd_tools.base.srdf import srdf_files
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
@@ -110,9 +109,7 @@ def file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]
 
 def _files(model: ModelSource) -> Iterator[Path]:
     if model.kind == "file" and model.origin is not None:
-        path = Path(model.origin.file).parent / Path(model.name).expanduser()
-        yield from model_files(path)
-        yield from srdf_files(path)
+        yield from model_files(Path(model.origin.file).parent / Path(model.name).expanduser())
 
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.run.used_files import changed
+from robbdd_tools.run.used_files import added, changed
 from robbdd_tools.workbench.model import Model, load_all
 
 if TYPE_CHECKING:
@@ -31,9 +31,13 @@ def model_now(place: StoredRun) -> Model | str:
 def refusal(place: StoredRun, model: Model | str) -> str:
     """Return what has changed since the run and what to do; empty if nothing has changed. Raises ``NoSuchRun``."""
     record = place.record()
-    others = [os.path.relpath(path) for path in changed(record.files, place.folder)]
-    if others:
-        return f"{', '.join(others)} {'was' if len(others) == 1 else 'were'} changed since the run"
+    for paths, deed in (
+        (changed(record.files, place.folder), "changed"),
+        (added(record.files, place.manifest(), place.folder), "added"),
+    ):
+        if paths:
+            names = ", ".join(map(os.path.relpath, paths))
+            return f"{names} {'was' if len(paths) == 1 else 'were'} {deed} since the run"
     if isinstance(model, str):
         return model
     if model.digest != record.digest:
