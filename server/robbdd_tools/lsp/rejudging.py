@@ -46,6 +46,8 @@ class Rejudging:
         self._revisions = count(1)
         self._asked: dict[str, Edited] = {}
         """The latest unanswered request about each model."""
+        self._newest: dict[str, int] = {}
+        """The revision of the latest request about each model."""
         self._repeated = 0
         """The revision that was requested again, because the process died over it."""
         self._process: Process | None = None
@@ -60,9 +62,9 @@ class Rejudging:
         """Re-judge the models that a document belongs to, soon. ``opened`` is true if it was opened, not edited."""
         if self._stopped or not any(True for _ in self._server.results):
             return
+        self._edited[uri] = None
         if opened and self._waiting is not None:
             return
-        self._edited[uri] = None
         if self._waiting is not None:
             self._waiting.cancel()
         self._waiting = self._server.spawn(self._order_soon(FIRST_PAUSE if opened else PAUSE))
@@ -98,6 +100,7 @@ class Rejudging:
     async def _order_soon(self, pause: float) -> None:
         await asyncio.sleep(pause)
         self._waiting = None
+        revision = next(self._revisions)
         edited, self._edited = self._edited, {}
         executions = self._shown_executions()
 
@@ -106,7 +109,10 @@ class Rejudging:
             return [uri for uri in reached if uri in executions], self._server.project.texts()
 
         models, texts = await self._server.analyse(affected, urgent=False)
-        orders = [await asyncio.to_thread(self._order, model, texts, executions[model]) for model in models]
+        found = [await asyncio.to_thread(self._order, revision, model, texts, executions[model]) for model in models]
+        # Stores are looked up in threads: the request about a later edit may be ready first.
+        orders = [order for order in found if revision > self._newest.get(order.uri, 0)]
+        self._newest |= {order.uri: revision for order in orders}
         self._asked |= {order.uri: order for order in orders}
         if orders:
             await self._send(orders)
@@ -119,10 +125,12 @@ class Rejudging:
                 found.setdefault(scenario.model, {}).setdefault(scenario.run, []).append(scenario.index)
         return found
 
-    def _order(self, model: str, texts: Mapping[str, tuple[int, str]], executions: dict[int, list[int]]) -> Edited:
+    def _order(
+        self, revision: int, model: str, texts: Mapping[str, tuple[int, str]], executions: dict[int, list[int]]
+    ) -> Edited:
         store = self._server.stores.of(model)
         numbers = {run: tuple(indices) for run, indices in executions.items()}
-        return Edited(next(self._revisions), model, texts, str(store.folder), numbers)
+        return Edited(revision, model, texts, str(store.folder), numbers)
 
     async def _send(self, orders: Sequence[Edited]) -> None:
         async with self._starting:
