@@ -74,7 +74,7 @@ def test_several_results_show_the_worst_and_how_many_hold() -> None:
     assert hints(HOLDS, VIOLATED, HOLDS) == ["in-tray ✗ 2/3  worst −12 mm"]
     assert hints(VIOLATED, WORSE) == ["in-tray ✗ 0/2  worst −40 mm"]
     assert hints(HOLDS, UNKNOWN) == ["in-tray ? 1/2"]
-    assert hints(UNDEFINED, UNDEFINED) == ["in-tray ? 0/2 no step"]
+    assert hints(UNDEFINED, UNDEFINED) == ["in-tray ? 0/2 no step definition"]
 
 
 @pytest.mark.parametrize(

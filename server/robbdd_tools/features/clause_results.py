@@ -273,7 +273,7 @@ def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) 
         holding = sum(judgement.outcome == "holds" for _, judgement in judged)
         label = f"{sign} {holding}/{len(judged)}" + (f"  worst {worst.margin}" if worst.margin else "")
     if worst.outcome == "undefined":
-        label += " no step"
+        label += " no step definition"
     if failing and len({judgement.because_words for _, judgement in failing}) == 1 and worst.because_words:
         words = worst.because_words.removeprefix("unknown ")
         label = f"{sign} {words}" if len(judged) == 1 else f"{label}  {words}"

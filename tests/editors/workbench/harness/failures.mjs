@@ -16,7 +16,7 @@ const BALLS = Array.from({ length: 8 }, (_, number) => `ball${number}`);
  * - `behaviour`: the class of `acting.py` that executes it; `instance`: the scene instance; `policy`: the function that
  *   judges the clause; `settings`: further lines of the execution.
  * - `line`: what the line with the cause reads; `cause`: how the message there begins; `margin`: how the words before a
- *   long line begin, if the margin is the cause.
+ *   clause begin, if they say less than the message.
  */
 export const FAILURES = {
   "no-room": {
@@ -56,7 +56,7 @@ export const FAILURES = {
     cause: /^violated by −\d+ mm at \d+\.\d\d s/,
     margin: /^✗ −\d+ mm at \d+\.\d\d s/,
   },
-  "no-step": { then: "'the lamp is green' after <evt-place-end>", line: /the lamp/, cause: /^no step definition for 'the lamp is green/ },
+  "no-step": { then: "'the lamp is green' after <evt-place-end>", line: /the lamp/, cause: /^no step definition for 'the lamp is green/, margin: /^\? unknown no step definition/ },
 };
 
 const CODE = `"""Behaviours and evaluators that fail, each in its own way."""
