@@ -232,8 +232,7 @@ describe("with three dimensions", () => {
     await workbench.problem("has no site or body 'tcpx'; did you mean 'tcp'?").then((problem) => problem.waitFor());
     await workbench.closePanel();
     await workbench.goTo(line, column + 'tool: "t'.length);
-    await workbench.page.keyboard.press("Control+.");
-    await workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'tcp'" }).waitFor();
+    await workbench.press("Control+.", workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'tcp'" }));
     await workbench.page.keyboard.press("Enter");
     await workbench.lines('tool: "tcp"').waitFor();
     await workbench.goTo(line, column + 'tool: "t'.length);

@@ -3,7 +3,7 @@ import { spawn } from "node:child_process";
 import { createHash } from "node:crypto";
 import { once } from "node:events";
 import { createWriteStream, existsSync } from "node:fs";
-import { cp, mkdir, readFile, rename, writeFile } from "node:fs/promises";
+import { cp, mkdir, readFile, readdir, rename, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -11,6 +11,8 @@ import { CACHE, codeServerEntry } from "./checkout.mjs";
 import { PATIENCE } from "./patience.mjs";
 
 const STOP_LIMIT = 5_000;
+const LOG_OF_EXTENSION = /robbdd-workbench[/\\].*\.log$/;
+const LOG_LINES = 30;
 
 const QUIET = {
   "workbench.startupEditor": "none",
@@ -95,6 +97,13 @@ export class CodeServer {
     return `http://127.0.0.1:${this.#port}/?folder=${encodeURIComponent(folder)}`;
   }
 
+  /** The last lines of the extension's and its language server's log. */
+  async extensionLog() {
+    const logs = join(this.#state, "data", "logs");
+    const names = (await readdir(logs, { recursive: true })).filter((name) => LOG_OF_EXTENSION.test(name)).sort();
+    return (await readFile(join(logs, names.at(-1) ?? ""), "utf8")).split("\n").slice(-LOG_LINES).join("\n");
+  }
+
   /** End the whole process group, kindly first. */
   async stop() {
     const group = this.#process?.pid;
@@ -147,7 +156,15 @@ export class CodeServer {
     }
     const copied = `${installed}-${process.pid}`;
     await cp(own, copied, { recursive: true });
-    await rename(copied, installed);
+    try {
+      await rename(copied, installed);
+    } catch (error) {
+      // Another process has installed it at the same time.
+      if (!existsSync(installed)) {
+        throw error;
+      }
+      await rm(copied, { recursive: true });
+    }
   }
 
   #spawn(args) {

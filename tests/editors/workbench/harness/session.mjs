@@ -62,10 +62,7 @@ export class Session {
    */
   async renew(workspace, prepare = async () => {}) {
     await this.workbench.tidy();
-    for (const name of await readdir(this.workspace)) {
-      await rm(join(this.workspace, name), { recursive: true, maxRetries: 5 });
-    }
-    await cp(workspace, this.workspace, { recursive: true });
+    await mirror(workspace, this.workspace);
     await prepare(this.workspace);
   }
 
@@ -128,17 +125,42 @@ export class Session {
     }, LONG);
   }
 
-  /** Close everything. With the name of a failure a last picture and the server's log are kept. */
+  /** Close everything. With the name of a failure, a last picture and the server's log are kept, and the window's text is printed. */
   async close(failure) {
     if (failure !== undefined) {
       await mkdir(SCREENSHOTS, { recursive: true });
       await this.#page?.screenshot({ path: join(SCREENSHOTS, `${failure}.png`) }).catch(() => {});
       await cp(this.server?.log ?? "", join(SCREENSHOTS, `${failure}.log`)).catch(() => {});
+      // A machine that only runs the tests keeps no pictures.
+      console.log(`${failure}: the window reads\n${await this.workbench?.text().catch(String)}`);
+      console.log(`${failure}: the log of the extension ends\n${await this.server?.extensionLog().catch(String)}`);
     }
     await this.#browser?.close();
     await this.server?.stop();
     if (this.#folder !== undefined) {
       await rm(this.#folder, { recursive: true, force: true, maxRetries: 5 });
+    }
+  }
+}
+
+/** Make a folder equal to another one. Equal files are not written: watchers would report them long afterwards. */
+async function mirror(from, to) {
+  const wanted = new Map((await readdir(from, { withFileTypes: true })).map((entry) => [entry.name, entry]));
+  for (const entry of await readdir(to, { withFileTypes: true })) {
+    if (wanted.get(entry.name)?.isDirectory() !== entry.isDirectory()) {
+      await rm(join(to, entry.name), { recursive: true, maxRetries: 5 });
+    }
+  }
+  for (const [name, entry] of wanted) {
+    const [source, copy] = [join(from, name), join(to, name)];
+    if (entry.isDirectory()) {
+      await mkdir(copy, { recursive: true });
+      await mirror(source, copy);
+    } else {
+      const before = await readFile(copy).catch(() => undefined);
+      if (before === undefined || !before.equals(await readFile(source))) {
+        await cp(source, copy);
+      }
     }
   }
 }

@@ -116,6 +116,16 @@ export class Workbench {
     await this.page.keyboard.type(text);
   }
 
+  /** Press a key until what it opens is visible: a busy window may lose the first, or close at once what it opened. */
+  async press(key, opened) {
+    await eventually(async () => {
+      if (!(await opened.isVisible())) {
+        await this.page.keyboard.press(key);
+      }
+      await opened.waitFor({ timeout: TRY });
+    });
+  }
+
   /** Save the active editor and wait until it is no longer marked as changed. */
   async save() {
     await this.page.keyboard.press("Control+S");
@@ -252,6 +262,16 @@ export class Workbench {
   /** A view in the side bar has its rows when the window has come back, whichever view that is. */
   async #restored() {
     await this.page.locator(".part.sidebar .monaco-list-row").first().waitFor();
+  }
+
+  /** What the window shows, in words, with the verdicts, which are drawn beside the lines. */
+  text() {
+    return this.page.evaluate((lines) => {
+      const drawn = [...document.querySelectorAll(`${lines} span`)].flatMap((span) =>
+        ["::before", "::after"].map((side) => getComputedStyle(span, side).content).filter((content) => content.startsWith('"')),
+      );
+      return `${document.body.innerText}\nbeside the text: ${[...new Set(drawn)].join(" ")}`;
+    }, `${EDITOR} .view-line`);
   }
 
   /** Write a picture of the whole window below the build output. */

@@ -24,8 +24,7 @@ export function editing(window) {
     await goBefore(FILE, "evt-end>");
     await workbench.type("x");
     await workbench.waitForError();
-    await workbench.page.keyboard.press("Control+.");
-    await workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'evt-end'" }).waitFor();
+    await workbench.press("Control+.", workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'evt-end'" }));
     await workbench.screenshot("editing-quick-fix");
     await workbench.page.keyboard.press("Enter");
     await workbench.waitForNoError();
@@ -35,9 +34,8 @@ export function editing(window) {
 
   step("after a time's bracket, only events are offered", async () => {
     await goBefore(FILE, "evt-end>");
-    await workbench.page.keyboard.press("Control+Space");
     const offered = workbench.page.locator(".suggest-widget.visible .monaco-list-row .label-name");
-    await offered.filter({ hasText: "evt-pick-start" }).first().waitFor();
+    await workbench.press("Control+Space", offered.filter({ hasText: "evt-pick-start" }).first());
     await workbench.screenshot("editing-completion");
     await eventually(async () => {
       const names = await offered.allTextContents();
@@ -54,9 +52,8 @@ export function editing(window) {
     await workbench.command("View: Close All Editors");
     await workbench.openFile(SCENE);
     await goBefore(SCENE, "right_ws }");
-    await workbench.page.keyboard.press("F2");
     const input = workbench.page.locator(".rename-box input, .rename-box .rename-input").first();
-    await input.waitFor();
+    await workbench.press("F2", input);
     await input.fill("far_ws");
     await workbench.screenshot("editing-rename");
     await workbench.page.keyboard.press("Enter");

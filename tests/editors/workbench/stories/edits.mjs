@@ -79,6 +79,8 @@ async function replaceAt(text, after, old, typed) {
   }
   await workbench.type(typed);
   await workbench.page.keyboard.press("Escape");
+  const behind = text.slice(old.length);
+  await workbench.lines(new RegExp(`${typed}${behind}`.replaceAll(" ", "\\s"))).first().waitFor();
 }
 
 /** The text of the file on disk, which no step saves, at the place of a text in the editor. */
