@@ -12,6 +12,7 @@ from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 from fork_kit import ROBBDD_LSP
 from fork_server.converter import FACTORY, shared_converter
+from lsp.recorded_projects import Window
 from lsp_kit import Editor, begin_session
 
 
@@ -63,3 +64,18 @@ async def client(
 @pytest.fixture
 def editor(client: LanguageClient, tmp_path: Path) -> Editor:
     return Editor(client, tmp_path)
+
+
+@pytest.fixture
+async def window() -> Any:
+    """A function that opens folders in a window of their own."""
+    opened: list[LanguageClient] = []
+
+    async def start(*folders: Path) -> Window:
+        found = await Window().start(folders)
+        opened.append(found.client)
+        return found
+
+    yield start
+    for client in opened:
+        await client.shutdown_session()

@@ -39,6 +39,10 @@ class Stores:
             return own
         return self._made(None) if path is None else store_beside(path)
 
+    def keeps_elsewhere(self, project: Path) -> bool:
+        """Return whether the runs of a project are in a temporary folder, because its own store cannot be written."""
+        return project in self._own
+
     def replayable(self, uri: str) -> frozenset[str]:
         """Return the IRIs of the variants that have a replayable run in the store of a document.
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from robbdd_tools.base.files import load_text, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.features.run_verdicts import JudgedScenario, as_json, from_json
+from robbdd_tools.lsp.found_runs import Seen
 
 FOLDER = ".robbdd"
 FILE = "results.json"
-VERSION = 2
+VERSION = 3
 _LOG = logging.getLogger(__name__)
 
 
@@ -24,21 +26,22 @@ class KeptResults:
     """The results of earlier sessions. ``seen`` maps the folder of each store to the last run that was read from it."""
 
     scenarios: tuple[JudgedScenario, ...] = ()
-    seen: Mapping[str, int] = field(default_factory=dict[str, int])
+    seen: Mapping[str, Seen] = field(default_factory=dict[str, Seen])
 
 
 def load_results(folders: Iterable[Path]) -> KeptResults:
     """Return the results that are saved in workspace folders. Unreadable files are skipped."""
     found = [_read(folder / FOLDER / FILE) for folder in folders]
     scenarios = tuple(scenario for kept in found for scenario in kept.scenarios)
-    return KeptResults(scenarios, {store: number for kept in found for store, number in kept.seen.items()})
+    return KeptResults(scenarios, {store: run for kept in found for store, run in kept.seen.items()})
 
 
-def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario], seen: Mapping[str, int]) -> None:
+def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario], seen: Mapping[str, Seen]) -> None:
     """Save each scenario in the innermost workspace folder that contains its model. Unwritable folders are skipped."""
     every = list(scenarios)
+    last = {store: asdict(run) for store, run in seen.items()}
     for folder, own in _by_folder(sorted(folders, key=lambda path: -len(path.parts)), every):
-        document = {"version": VERSION, "seen": dict(seen), "scenarios": [as_json(entry) for entry in own]}
+        document = {"version": VERSION, "seen": last, "scenarios": [as_json(entry) for entry in own]}
         text = json.dumps(document, ensure_ascii=False)
         try:
             _write(folder / FOLDER, text)
@@ -63,7 +66,7 @@ def _read(path: Path) -> KeptResults:
         data = json.loads(load_text(path, RESULT_SIZE))
         if data["version"] != VERSION:
             return KeptResults()
-        seen = {str(store): int(number) for store, number in data.get("seen", {}).items()}
+        seen = {str(store): from_plain(Seen, run) for store, run in data["seen"].items()}
         return KeptResults(tuple(from_json(entry) for entry in data["scenarios"]), seen)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         _LOG.info("results in %s cannot be read: %s", path, error)

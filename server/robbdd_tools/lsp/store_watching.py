@@ -40,6 +40,11 @@ class StoreWatching:
                 register_options=types.DidChangeWatchedFilesRegistrationOptions(
                     watchers=[
                         types.FileSystemWatcher(types.RelativePattern(path_to_uri(folder), f"*/{RESULTS}")),
+                        # Clients report a deleted folder without the files in it.
+                        types.FileSystemWatcher(
+                            types.RelativePattern(path_to_uri(folder.parent.parent), folder.parent.name),
+                            types.WatchKind.Delete,
+                        ),
                     ]
                 ),
             )

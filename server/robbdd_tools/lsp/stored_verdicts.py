@@ -6,40 +6,18 @@ These include runs of the command line and of servers that ended during a run.
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Results
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, project_of, with_cause
+from robbdd_tools.lsp.found_runs import NOTHING_SEEN, Seen, read_store
 from robbdd_tools.lsp.saved_results import load_results, save_results
-from robbdd_tools.run.consequences import Causes
-from robbdd_tools.run.readable import clause_title, readable
-from robbdd_tools.run.store import RunStore, store_beside
-from robbdd_tools.run.stored_results import RUNNING
-from robbdd_tools.workbench.judged_text import read_texts
+from robbdd_tools.run.store import FOLDER, RunStore, store_beside
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
-    from robbdd_tools.run.readable import clause_title, readable
-from robbdd_tools.run.store import StoredRun
-
-_LOG = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True, slots=True)
-class FoundRun:
-    """The finished scenarios of a stored run.
-
-    ``some_repetitions`` is true if the run executed only some repetitions of its scenarios.
-    """
-
-    scenarios: tuple[JudgedScenario, ...]
-    some_repetitions: bool
 
 
 class StoredVerdicts:
@@ -47,7 +25,7 @@ class StoredVerdicts:
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
-        self._seen: dict[str, int] = {}
+        self._seen: dict[str, Seen] = {}
         self._known: set[Path] = set()
         self._reading = asyncio.Lock()
         self._loaded = asyncio.Event()
@@ -65,7 +43,7 @@ class StoredVerdicts:
         self._seen = dict(kept.seen)
         results = Results(kept.scenarios)
         # A run in progress is newer than the kept results.
-        in_progress = list(ls.run.judged.values()) if ls.run is not None else []
+        in_progress = self._in_progress()
         for scenario in in_progress:
             results.drop(scenario.scenario_key, scenario.execution)
         results.add(in_progress)
@@ -91,18 +69,23 @@ class StoredVerdicts:
         await self.refresh([store for folder, store in stores.items() if folder not in self._known])
 
     async def refresh(self, stores: Iterable[RunStore]) -> None:
-        """Show the verdicts of runs that have ended since the stores were last read."""
+        """Show the verdicts of runs that have ended since the stores were last read.
+
+        The verdicts of a store that was deleted are removed.
+        """
         ls = self._server
         async with self._reading:
             changed = False
             for store in {store.folder: store for store in stores}.values():
                 self._known.add(store.folder)
                 key = str(store.folder)
-                found, seen, newest = await asyncio.to_thread(_read, store, self._seen.get(key, 0))
-                changed = changed or self._seen.get(key, 0) != seen
-                self._seen[key] = seen
-                for run in found:
-                    ls.results.merge(run.scenarios, newest, some_repetitions=run.some_repetitions)
+                before = self._seen.get(key, NOTHING_SEEN)
+                read = await asyncio.to_thread(read_store, store, before)
+                dropped = read.is_replaced and self._drop(store)
+                changed = changed or dropped or before != read.seen
+                self._seen[key] = read.seen
+                for run in read.found:
+                    ls.results.merge(run.scenarios, read.newest, some_repetitions=run.some_repetitions)
             if changed:
                 ls.show_results(ls.opened())
                 ls.rejudging.results_changed()
@@ -112,56 +95,21 @@ class StoredVerdicts:
         """Save the shown results for the next session. In an untrusted workspace, nothing is written."""
         ls = self._server
         if ls.trusted:
-            seen = {store: number for store, number in self._seen.items() if number}
+            seen = {store: seen for store, seen in self._seen.items() if seen.number}
             await asyncio.to_thread(save_results, ls.folders(), list(ls.results), seen)
 
+    def _drop(self, store: RunStore) -> bool:
+        """Remove the results of a store whose runs no longer exist, and return whether there were any."""
+        ls, kept = self._server, {id(scenario) for scenario in self._in_progress()}
+        projects = {
+            project for one in ls.results if (project := one.project) and Path(project) / FOLDER == store.folder
+        }
+        projects = {project for project in projects if not ls.stores.keeps_elsewhere(Path(project))}
+        gone = [one for one in ls.results if one.project in projects and id(one) not in kept]
+        for scenario in gone:
+            ls.results.discard(scenario)
+        return bool(gone)
 
-def _read(store: RunStore, seen: int) -> tuple[list[FoundRun], int, int]:
-    """Return the results of runs that have not been read yet, the number of the last run read, and the newest run.
-
-    ``seen`` is the number of the last run that was read before. A run that is in progress, and all later runs, are read
-    only after that run has ended.
-    """
-    runs = store.runs()
-    newest = runs[-1].number if runs else 0
-    # Numbers restart in a store that was deleted.
-    seen = seen if seen <= newest else 0
-    found: list[FoundRun] = []
-    for run in runs:
-        if run.number > seen:
-            try:
-                if run.status().state == RUNNING:
-                    break
-                found.append(_found(run))
-            except (RobbddError, OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-                _LOG.info("verdicts of %s are not shown: %s", run.folder, error)
-            seen = run.number
-    return found, seen, newest
-
-
-def _found(run: StoredRun) -> FoundRun:
-    texts = read_texts(run.folder)
-    named, seed, results = texts.named(), run.record().user_seed, run.read_results()
-    scenarios: list[JudgedScenario] = []
-    if results is None:
-        return FoundRun((), texts.some_repetitions)
-    vacuous = results.vacuous()
-    projects = {text.uri: project_of(text.uri) for text in named.values()}
-    for index, result in enumerate(results.scenarios):
-        if result.finished is not None:
-            text = named[result.spec.model]
-            scenario = judged_scenario(
-                result.spec, text.uri, text.digests, projects[text.uri], run=run.number, index=index, seed=seed
-            )
-            causes = Causes()
-            for position, clause in enumerate(result.spec.clauses):
-                judged = result.judged.get(clause.line)
-                if judged is not None:
-                    shown = readable(judged, result.spec, results.faults)
-                    found = judgement(clause, shown, text.digests)
-                    because = causes.add(position, clause_title(clause), judged)
-                    scenario.judge(clause.iri, with_cause(found, because, result.spec))
-            scenario.mark_vacuous(vacuous)
-            scenario.finished = True
-            scenarios.append(scenario)
-    return FoundRun(tuple(scenarios), texts.some_repetitions)
+    def _in_progress(self) -> list[JudgedScenario]:
+        run = self._server.run
+        return [] if run is None else list(run.judged.values())

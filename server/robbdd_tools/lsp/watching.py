@@ -11,6 +11,7 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.lsp.client_settings import read_settings
 from robbdd_tools.lsp.refresh import LENSES
+from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RESULTS, RunStore
 from robbdd_tools.syntax.parse import LANGUAGES
 
@@ -25,6 +26,10 @@ RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
 """Results file of a stored run, also of one from the command line."""
 
 
+STORES = f"**/{{{FOLDER.parent},{FOLDER.as_posix()},{FOLDER.parent}/{NAME}}}"
+"""A store of runs, and the folders around it. Clients report a deleted folder without the files in it."""
+
+
 def register_watching(server: RobbddServer) -> None:
     """Add the methods to a server."""
 
@@ -32,10 +37,11 @@ def register_watching(server: RobbddServer) -> None:
     async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
         # No analysis depends on runs.
         every = [change.uri for change in params.changes]
-        changed = [uri for uri in every if not uri.endswith((f"/{RESULTS}", ".py"))]
-        if ended := [path for uri in every if uri.endswith(f"/{RESULTS}") and (path := uri_to_path(uri)) is not None]:
+        stores = {uri: store for uri in every if (store := _store_of(uri)) is not None}
+        changed = [uri for uri in every if uri not in stores and not uri.endswith(".py")]
+        if stores:
             ls.refreshes.want(LENSES)
-            ls.spawn(ls.stored_verdicts.refresh(RunStore(path.parent.parent) for path in ended))
+            ls.spawn(ls.stored_verdicts.refresh(stores.values()))
         if any(uri.endswith(".py") for uri in every):
             await ls.user_errors.code_changed()
         if changed:
@@ -49,6 +55,20 @@ def register_watching(server: RobbddServer) -> None:
         await ls.stored_verdicts.load()
 
 
+def _store_of(uri: str) -> RunStore | None:
+    """Return the store to which a changed file or folder belongs; ``None`` for other files."""
+    path = uri_to_path(uri)
+    if path is None:
+        return None
+    if path.name == RESULTS:
+        return RunStore(path.parent.parent)
+    if path.name == NAME:
+        return RunStore(path.parent / FOLDER.name)
+    if path.parts[-len(FOLDER.parts) :] == FOLDER.parts:
+        return RunStore(path)
+    return RunStore(path / FOLDER.name) if path.name == FOLDER.parent.name else None
+
+
 async def watch_files(ls: RobbddServer) -> None:
     """Subscribe to file changes if the client supports it."""
     workspace = ls.client_capabilities.workspace
@@ -56,7 +76,10 @@ async def watch_files(ls: RobbddServer) -> None:
     if watched is None or not watched.dynamic_registration:
         return
     options = types.DidChangeWatchedFilesRegistrationOptions(
-        watchers=[types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, PYTHON, RUNS)]
+        watchers=[
+            *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, PYTHON, RUNS)),
+            types.FileSystemWatcher(STORES, types.WatchKind.Delete),
+        ]
     )
     entry = types.Registration(
         id="robbdd-files", method=types.WORKSPACE_DID_CHANGE_WATCHED_FILES, register_options=options

@@ -30,7 +30,7 @@ from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import LOG, NAME, DatabaseProblem
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.store_maintenance import make_ready, remove_runs
-from robbdd_tools.run.stored_results import FINISHED, INTERRUPTED, RunStatus, numbers, read_results, read_status
+from robbdd_tools.run.stored_results import FINISHED, INTERRUPTED, RunStatus, read_results, read_status, starts
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
 """Files or folders that mark a project's root."""
@@ -239,7 +239,7 @@ class RunStore:
         found = self._folders()
         # If the database cannot be read, each run reports it.
         with suppress(DatabaseProblem):
-            found |= dict.fromkeys(numbers(self.database))
+            found |= dict.fromkeys(starts(self.database))
         return [self._run(number) for number in sorted(found)]
 
     def begin(self) -> StoredRun:

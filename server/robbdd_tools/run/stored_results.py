@@ -85,14 +85,17 @@ def read_status(database: Path, number: int, *, live: bool = False) -> RunStatus
             return _status(connection, number, live=live)
 
 
-def numbers(database: Path) -> list[int]:
-    """Return the numbers of the runs in a database; raises ``DatabaseProblem``."""
+def starts(database: Path) -> dict[int, str]:
+    """Map the number of each run in a database, in order, to the time at which it began (ISO 8601).
+
+    Raises ``DatabaseProblem``.
+    """
     with explained(database):
         connection = read_database(database)
         if connection is None:
-            return []
+            return {}
         with closing(connection):
-            return [number for (number,) in connection.execute("SELECT number FROM run ORDER BY number")]
+            return dict(connection.execute("SELECT number, began FROM run ORDER BY number").fetchall())
 
 
 def finished_executions(database: Path, number: int) -> Mapping[int, float] | None:
