@@ -200,6 +200,17 @@ async def test_what_a_closed_file_uses_is_not_called_unused_until_it_uses_it_no_
     await editor.diagnostics()
 
 
+async def test_a_search_that_finds_a_new_file_changes_the_diagnostics(editor: Editor) -> None:
+    editor.path.with_name("pickplace.bddx").unlink()
+    editor.open(editor.text.replace("Event (ns=crit)", "Event (ns=crit) evt-idle\nEvent (ns=crit)", 1))
+    await editor.diagnostics("unused-event")
+    editor.path.with_name("later.bdd").write_text(EVENT_USER.replace("EVENT", "evt-idle"), encoding="utf-8")
+    async with asyncio.timeout(PATIENCE):
+        while "later.bdd" not in await users(editor, "evt-idle"):
+            await asyncio.sleep(0.1)
+    await editor.diagnostics()
+
+
 async def test_the_workspace_ends_where_its_folders_end(
     scene: Editor, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

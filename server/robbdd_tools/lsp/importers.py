@@ -35,7 +35,7 @@ class Importers:
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
         self._known: dict[str, tuple[float, ImportGraph]] = {}
-        self._looking: asyncio.Task[bool] | None = None
+        self._looking: asyncio.Task[None] | None = None
         self.elsewhere = Elsewhere()
         """The names declared in files of the workspace, loaded or not."""
 
@@ -54,8 +54,11 @@ class Importers:
             self._known[near] = monotonic(), known
         return known
 
-    async def load(self, uris: Iterable[str]) -> bool:
-        """Load all files that import the given ones. Return whether a file was new. Requests have priority."""
+    async def load(self, uris: Iterable[str]) -> None:
+        """Load all files that import the given ones, and publish diagnostics that change because of new ones.
+
+        Requests have priority.
+        """
         found: set[str] = set()
         for uri in uris:
             if uri_to_path(uri) is not None:
@@ -74,7 +77,13 @@ class Importers:
                 loaded.file(uri)
             return bool(fresh)
 
-        return bool(found) and await self._server.analyse(read, urgent=False)
+        if found and await self._server.analyse(read, urgent=False):
+            # Here, not in the search after an edit: a request may have loaded the file first.
+            self._server.spawn(self._publish())
+
+    async def _publish(self) -> None:
+        for uri in self._server.opened():
+            await self._server.publish(uri)
 
     async def analyse(self, uri: str, position: types.Position, work: Callable[[Snapshot], Result]) -> Result:
         """Load all files that may use the name at a position, then execute ``work``."""
@@ -99,26 +108,24 @@ class Importers:
         await self.load([await self._server.analyse(declaring)])
 
     async def look_around(self) -> None:
-        """Load the files on disk that import open files, and publish diagnostics that change because of them."""
-        await self._publish_after(self._begin())
+        """Load the files on disk that import open files."""
+        await self._read_names_after(self._begin())
 
     def queue_search(self) -> None:
         """Start ``look_around`` in the background. Requests have priority."""
-        self._server.spawn(self._publish_after(self._begin()))
+        self._server.spawn(self._read_names_after(self._begin()))
 
     async def looked_around(self) -> None:
         """Wait for a ``look_around`` that is in progress, because a rename must know all uses of a name."""
         if self._looking is not None:
             await asyncio.wait([self._looking])
 
-    def _begin(self) -> asyncio.Task[bool]:
+    def _begin(self) -> asyncio.Task[None]:
         self._known.clear()
         self._looking = asyncio.get_running_loop().create_task(self.load(list(self._server.opened())))
         return self._looking
 
-    async def _publish_after(self, loaded: asyncio.Task[bool]) -> None:
-        if await loaded:
-            for uri in self._server.opened():
-                await self._server.publish(uri)
+    async def _read_names_after(self, loaded: asyncio.Task[None]) -> None:
+        await loaded
         files = await asyncio.to_thread(model_files, list(self._server.workspace.folders))
         await self._server.analyse(lambda _: self.elsewhere.update(files), urgent=False)
