@@ -20,11 +20,14 @@ def test_every_configuration_says_what_it_is_and_reads_its_own_values(setting: S
 def test_the_documented_names_are_known() -> None:
     assert list(SETTINGS) == [
         "approach_speed",
+        "attach_distance",
         "belt_speed",
         "carry_clearance",
         "displacement_limit",
+        "drop_height",
         "ee_speed",
         "exactly_one",
+        "follow_speed",
         "force_limit",
         "friction",
         "grip_time",
@@ -40,7 +43,9 @@ def test_the_documented_names_are_known() -> None:
 
 
 def test_an_unknown_name_is_told_the_known_ones() -> None:
-    with pytest.raises(SettingError, match="no configuration 'colour'; the known ones are approach_speed, belt_speed"):
+    with pytest.raises(
+        SettingError, match="no configuration 'colour'; the known ones are approach_speed, attach_distance,"
+    ):
         setting_of("colour")
 
 

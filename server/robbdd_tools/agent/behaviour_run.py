@@ -12,6 +12,7 @@ import numpy as np
 
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
 from robbdd_tools.catalog.coordination import emitter
+from robbdd_tools.catalog.executors import DEFAULT, TIMED, executes
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
 from robbdd_tools.world.composition import build_world
@@ -23,6 +24,7 @@ from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.scene import contents_of
 from robbdd_tools.world.simulation import Simulation
+from robbdd_tools.world.timed_pick_place import TimedPickPlace
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
 if TYPE_CHECKING:
@@ -237,6 +239,10 @@ class BehaviourRun:
                 return controller.pick(call.element("object"))
             case "place":
                 return controller.place(call.element("object"), self._in_any_order(call))
+            case "pick-place" if self._implementation is not None and self._implementation.name == TIMED:
+                return TimedPickPlace(self.simulation, call.element("agent"), self._emit).pick_place(
+                    call.element("object"), call.places
+                )
             case "pick-place":
                 return controller.pick_place(call.element("object"), self._in_any_order(call))
             case other:
@@ -329,10 +335,10 @@ def _check_implementation(implementation: Implementation | None, calls: Iterable
         name = implementation.iri.replace("#", "/").rpartition("/")[2]
         raise SceneError(
             f"{place}the ROS action '{implementation.name}' is not available in simulation: name a behaviour of the "
-            f'catalog or "py {{ module: …, attr: … }}", or run with --bhv {name}=pick-place'
+            f'catalog or "py {{ module: …, attr: … }}", or run with --bhv {name}={DEFAULT}'
         )
     for call in calls:
-        if implementation.name not in (call.behaviour, "pick-place"):
+        if not executes(implementation.name, call.behaviour):
             raise SceneError(f"{place}'{implementation.name}' of the catalog does not execute '{call.behaviour}'")
 
 

@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 OF_AGENTS = frozenset(
     {
         "approach_speed",
+        "attach_distance",
         "carry_clearance",
+        "drop_height",
         "ee_speed",
+        "follow_speed",
         "grip_time",
         "position_range",
         "release_time",
@@ -34,7 +37,7 @@ def object_has(model: ObjectModel, name: str) -> bool:
     match name:
         case "seed" | "friction":
             return True
-        case "position_range":
+        case "position_range" | "drop_height":
             return model.graspable
         case "mass":
             return model.free

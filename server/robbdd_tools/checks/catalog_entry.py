@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
+from robbdd_tools.catalog.executors import EXECUTORS
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
@@ -20,9 +21,9 @@ CODE = "catalog-entry"
 
 
 def known_entries(language: str) -> Mapping[str, object]:
-    """Return the entries that ``catalog "…"`` may name in a kind of file: behaviours in an execution, else models."""
+    """Return the entries that ``catalog "…"`` may name in a kind of file: executors in an execution, else models."""
     catalog = load_catalog()
-    return catalog.behaviours if language == "bddx" else {**catalog.robots, **catalog.objects}
+    return EXECUTORS if language == "bddx" else {**catalog.robots, **catalog.objects}
 
 
 def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:

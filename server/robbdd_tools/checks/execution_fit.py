@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.executors import DEFAULT, EXECUTORS, executes
 from robbdd_tools.checks.finding import change, finding, listed, related_to
 from robbdd_tools.names.elements import Site, story_sites
 from robbdd_tools.syntax import tree
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 CODE = "execution-fit"
-DOES_ALL = "pick-place"
-"""The catalog behaviour that can also execute all others."""
 
 
 def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -42,14 +40,14 @@ def _behaviour(site: Site, execution: tree.Execution) -> Iterator[Diagnostic]:
     if implementation is None or not isinstance(implementation.tree, tree.Implementation):
         return
     source = implementation.tree.source
-    if not isinstance(source, tree.CatalogEntry) or source.name.value in (DOES_ALL,):
+    if not isinstance(source, tree.CatalogEntry) or source.name.value not in EXECUTORS:
         return
     executed = source.name.value
-    wanted = [word for word in _behaviours(site, execution) if word != executed]
-    if wanted and executed in load_catalog().behaviours:
+    wanted = [word for word in _behaviours(site, execution) if not executes(executed, word)]
+    if wanted:
         message = not_executed(executed, wanted)
         related = (related_to(implementation, source, "the implementation"),)
-        fix = change(implementation, f"Execute it by '{DOES_ALL}'", source.name, f'"{DOES_ALL}"')
+        fix = change(implementation, f"Execute it by '{DEFAULT}'", source.name, f'"{DEFAULT}"')
         yield finding(site, execution.behaviour, Severity.WARNING, CODE, message, related, (fix,))
 
 

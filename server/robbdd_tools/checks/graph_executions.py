@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.catalog.executors import executes
 from robbdd_tools.checks.catalog_entry import CODE as CATALOG_ENTRY
 from robbdd_tools.checks.catalog_entry import known_entries, not_in_catalog
 from robbdd_tools.checks.execution_fit import CODE as EXECUTION_FIT
-from robbdd_tools.checks.execution_fit import DOES_ALL, not_executed, not_two
+from robbdd_tools.checks.execution_fit import not_executed, not_two
 from robbdd_tools.checks.model_file import CODE as MODEL_FILE
 from robbdd_tools.checks.model_file import missing_file
 from robbdd_tools.checks.not_simulated import CODE as NOT_SIMULATED
@@ -63,10 +64,12 @@ def _implementation(site: GraphSite, execution: Execution) -> Iterator[Diagnosti
 
 def _misfit(site: GraphSite, execution: Execution, implementation: Implementation) -> Iterator[Diagnostic]:
     variant = next((one for one in site.variants if one.iri == execution.variant), None)
-    if variant is None or implementation.name == DOES_ALL:
+    if variant is None:
         return
     clauses = behaviour_clauses((*variant.template.clauses, *variant.clauses))
-    wanted = [word for word in dict.fromkeys(one.behaviour for one in clauses) if word != implementation.name]
+    wanted = [
+        word for word in dict.fromkeys(one.behaviour for one in clauses) if not executes(implementation.name, word)
+    ]
     if wanted:
         yield site.finding(execution.iri, EXECUTION_FIT, not_executed(implementation.name, wanted))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.catalog.executors import EXECUTORS
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.outside_place import OutsidePlace
 from robbdd_tools.features.sentences import word_meaning
@@ -47,13 +48,13 @@ def describe_catalog_entry(name: str) -> str | None:
     behaviour = catalog.behaviours.get(name)
     if behaviour is not None:
         return word_meaning(behaviour)
-    model = catalog.robots.get(name) or catalog.objects.get(name)
+    model = EXECUTORS.get(name) or catalog.robots.get(name) or catalog.objects.get(name)
     return None if model is None else f"`{name}`\n\n{model.doc}"
 
 
 def entry_definition(name: str) -> OutsidePlace | None:
     """Return the Python file that defines a catalog entry."""
     catalog = load_catalog()
-    entry = catalog.behaviours.get(name) or catalog.robots.get(name) or catalog.objects.get(name)
+    entry = catalog.behaviours.get(name) or EXECUTORS.get(name) or catalog.robots.get(name) or catalog.objects.get(name)
     path = None if entry is None else source_of(entry)
     return None if path is None else OutsidePlace(path_to_uri(path), "", Span(0, 0))

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.executors import DEFAULT, EXECUTORS, executes
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.graph.acceptance_model import Clause, Iri, behaviour_clauses
 
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution
     from robbdd_tools.protocol.specs import ScenarioSpec
-
-EXECUTES_ALL = "pick-place"
-"""The catalog behaviour that can replace all others."""
 
 
 def parse_substitution(text: str) -> tuple[str, str]:
@@ -39,13 +36,12 @@ def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str
         for execution in model.executions:
             known |= _names(model, execution.implementation.iri)
             local.add(_local(model, execution.implementation.iri))
-    catalog = load_catalog().behaviours
     for name, behaviour in substitutions.items():
         if name not in known:
             there_are = f"the executions use {', '.join(sorted(local))}" if local else "the model has no executions"
             raise SelectionError(f"there is no behaviour implementation '{name}'; {there_are}")
-        if behaviour not in catalog:
-            raise SelectionError(f"the catalog has no behaviour '{behaviour}'; it has {', '.join(catalog)}")
+        if behaviour not in EXECUTORS:
+            raise SelectionError(f"the catalog has no behaviour '{behaviour}'; it has {', '.join(EXECUTORS)}")
 
 
 def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> AcceptanceModel:
@@ -73,11 +69,11 @@ def _substituted(model: AcceptanceModel, execution: Execution, substitutions: Ma
         return execution
     behaviour = named[-1]
     refuse_unknown([model], {execution.implementation.iri: behaviour})
-    unfit = [one for one in _behaviours(model, execution.variant) if behaviour not in (one, EXECUTES_ALL)]
+    unfit = [one for one in _behaviours(model, execution.variant) if not executes(behaviour, one)]
     if unfit:
         raise SelectionError(
             f"'{behaviour}' of the catalog does not execute '{unfit[0]}' of {_local(model, execution.iri)}: "
-            f"substitute '{EXECUTES_ALL}' for {_local(model, execution.implementation.iri)}"
+            f"substitute '{DEFAULT}' for {_local(model, execution.implementation.iri)}"
         )
     return replace(execution, implementation=_replaced(execution.implementation, behaviour))
 

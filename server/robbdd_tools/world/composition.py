@@ -127,6 +127,7 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         _add_object(spec, name, model, poses[name], len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
+        _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (0.0,))[0])
     pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
     loose = [
         shape_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
@@ -224,6 +225,12 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     column.rgba = [0.45, 0.47, 0.50, 1.0]
     for one, other in (*apart, *((COLUMN, body) for body in beside_base)):
         spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
+
+
+def _pull_from(spec: Any, pads: list[str], distance: float) -> None:
+    """Let a vacuum pull from a distance (m): the engine's adhesion acts on contacts in a gap, which exert no force."""
+    for pad in pads if distance else ():
+        spec.geom(pad).gap = distance
 
 
 def _attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.catalog.object_settings import is_scalable
 from robbdd_tools.catalog.settings import NORMAL, Numbers, written
+from robbdd_tools.catalog.timetables import timetable_of
 from robbdd_tools.world.belts import belt_speed, belts_of
 from robbdd_tools.world.scene_configuration import CONTROLLER
 
@@ -27,6 +28,8 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "mass"] = (float(body.mass[0]),)
         if thing.graspable:
             settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+            if name in cast.drops:
+                settings[name, "drop_height"] = cast.drops[name]
         for servo in belts_of(model, name)[:1]:
             settings[name, "belt_speed"] = (belt_speed(model, servo),)
         if is_scalable(thing):
@@ -37,6 +40,11 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
         if robot.model.approach_speed is None:
             settings[name, "approach_speed"] = settings[name, "ee_speed"]
         settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+        if name in cast.drops:
+            settings[name, "drop_height"] = cast.drops[name]
+        follow = (timetable_of(robot.model.name).follow_speed,)
+        settings[name, "follow_speed"] = cast.chosen.get((name, "follow_speed"), follow)
+        settings[name, "attach_distance"] = (float(model.geom_gap[robot.pads[0]]),)
     # A seed may be configured for any element, such as the scene.
     for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
         settings[name, "seed"] = (float(simulation.world.seed),)

@@ -58,6 +58,7 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
         pair.condim = max(int(pad.condim), int(part.condim))
         pair.friction = [sliding, sliding, sliding * patch, rolling, rolling]
         pair.solref, pair.solimp = pad.solref, pad.solimp
+        pair.gap = pad.gap
 
 
 def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> None:

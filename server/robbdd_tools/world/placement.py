@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
+from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
@@ -132,6 +134,7 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
             poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
     bins = [name for name in poses if cast.objects[name].free]
     taken: list[_Disc] = []
+    dropped: list[Ball] = []
     resampled = 0
     for name, model in cast.objects.items():
         if not model.graspable:
@@ -139,6 +142,12 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
         walls = [(poses[other], cast.objects[other]) for other in bins]
         if name in placed:
             pose, rejected = _apart_from(cast, name, placed[name], taken)
+        elif name in cast.drops:
+            place = partial(
+                _place_above, next(_fields(scene, cast, poses, base, name)), base, walls, footprint(model), rng
+            )
+            pose, ball, rejected = drop(name, model, cast.drops[name], place, dropped, rng)
+            dropped.append(ball)
         else:
             pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
         taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
@@ -274,6 +283,16 @@ def _draw(
                 return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
             rejected += 1
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
+
+
+def _place_above(
+    field: _Field, base: Pose, walls: list[tuple[Pose, ObjectModel]], radius: float, rng: np.random.Generator
+) -> tuple[float, float] | None:
+    """Draw a position above a field, or return ``None`` if it is above a bin or behind the robot."""
+    dx, dy = rng.uniform(-1.0, 1.0, 2)
+    x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
+    free = all(_apart(x, y, radius + TOUCHING, pose, other) for pose, other in walls)
+    return (x, y) if free and abs(bearing(base, x, y)) <= BEARING else None
 
 
 def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:

@@ -33,6 +33,8 @@ class Cast:
       carrier is absent.
     - ``ranges``: the areas in which some elements are laid out (``position_range``).
     - ``seed``: the seed that the scene sets, if any.
+    - ``drops``: the heights (m) from which some elements are dropped (``drop_height``).
+    - ``chosen``: maps an agent and a name to a configuration that its controller or gripper reads.
     - ``judged``: maps an element and a name to a configuration that only changes how the element is judged.
     """
 
@@ -41,6 +43,8 @@ class Cast:
     regions: Mapping[str, tuple[tuple[str, Region], ...]]
     ranges: Mapping[str, Numbers]
     seed: int | None
+    drops: Mapping[str, Numbers] = field(default_factory=dict[str, "Numbers"])
+    chosen: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
     judged: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
     staging: Staging | None = None
@@ -122,7 +126,19 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
     objects |= {name: centred(model) for name, model in objects.items()}
     regions = _regions(scene, objects)
-    return Cast(objects, agents, regions, found.ranges, found.seed, found.judged, staging, tuple(left_out), heights)
+    return Cast(
+        objects,
+        agents,
+        regions,
+        found.ranges,
+        found.seed,
+        found.drops,
+        found.chosen,
+        found.judged,
+        staging,
+        tuple(left_out),
+        heights,
+    )
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:

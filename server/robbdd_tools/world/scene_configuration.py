@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
+from robbdd_tools.catalog.api import GripperKind, ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import object_has
 from robbdd_tools.catalog.settings import SETTINGS, Numbers, SettingError, setting_of, written
 from robbdd_tools.world.errors import SceneError
@@ -32,13 +32,16 @@ CONTROLLER = {
 class Configured:
     """Configured models of objects and agents, position ranges (m) and the seed, if any.
 
-    ``judged`` are the configurations, by element and name, that change only how the world is judged.
+    ``drops`` are the heights (m) from which objects are dropped. ``chosen`` are configurations, by element and name,
+    that controllers and grippers read; ``judged`` are those that change only how the world is judged.
     """
 
     objects: dict[str, ObjectModel]
     agents: dict[str, RobotModel]
     ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
+    drops: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     seed: int | None = None
+    chosen: dict[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
     judged: dict[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
 
@@ -73,10 +76,14 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case name if name in CONTROLLER and robot is not None:
             changed: dict[str, Any] = {CONTROLLER[name]: value[0]}
             found.agents[element] = replace(robot, **changed)
-        case "position_range" if robot is not None:
-            found.ranges |= dict.fromkeys(_loose(found), value) | {element: value}
-        case "position_range" if able is not None:
-            found.ranges[element] = value
+        case "position_range" | "drop_height" as name if robot is not None or able is not None:
+            areas = found.ranges if name == "position_range" else found.drops
+            areas |= {} if robot is None else dict.fromkeys(_loose(found, areas), value)
+            areas[element] = value
+        case "follow_speed" as name if robot is not None:
+            found.chosen[element, name] = value
+        case "attach_distance" as name if robot is not None and (robot.gripper is GripperKind.SUCTION or not value[0]):
+            found.chosen[element, name] = value
         case "mass" if able is not None:
             found.objects[element] = replace(able, mass=value[0])
         case "friction" if able is not None:
@@ -91,9 +98,9 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             raise SceneError(f"'{config.target}' has no {name}: it applies to {SETTINGS[name].target}")
 
 
-def _loose(found: Configured) -> list[str]:
-    """Return the objects that are laid out at random and that have no range of their own."""
-    return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
+def _loose(found: Configured, areas: Mapping[str, Numbers]) -> list[str]:
+    """Return the objects that are laid out at random and that have no value of their own."""
+    return [name for name in found.objects if found.objects[name].graspable and name not in areas]
 
 
 def _driven(model: ObjectModel, speed: float) -> ObjectModel:
