@@ -64,6 +64,8 @@ COMMANDS = (
     "report latest -o report.html --store runs",
     "study run one.study --store studies",
     "study status one.study --store studies",
+    "study outcomes one.study --store studies",
+    "study margins one.study --clause at-goal --by thing --store studies",
     "study plan --width 0.05",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",

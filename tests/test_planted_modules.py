@@ -39,6 +39,8 @@ COMMANDS = (
     "report latest -o out/report.html --store out/runs",
     "study run one.study --store out/studies",
     "study export one.study -o out/rows.csv --store out/studies",
+    "study outcomes one.study --plot out/outcomes.svg --store out/studies",
+    "study margins one.study --clause at-goal --by thing --store out/studies",
     "study plan --width 0.05",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",

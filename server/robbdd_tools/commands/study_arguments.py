@@ -31,6 +31,19 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         _allow_store(one)
         one.set_defaults(command=command)
+    outcomes = commands.add_parser("outcomes", help="count executions by factors and by their first violated clause")
+    text = "factors or variables, such as robot,scale (default: all with several levels)"
+    outcomes.add_argument("--by", metavar="NAME,…", type=_names, default=(), help=text)
+    outcomes.set_defaults(command=_outcomes)
+    margins = commands.add_parser("margins", help="print quantiles of the margins of a clause in executions that hold")
+    margins.add_argument("--clause", metavar="NAME", required=True, help="name of the clause")
+    margins.add_argument("--by", metavar="NAME", required=True, help="factor or variable")
+    margins.set_defaults(command=_margins)
+    for one in (outcomes, margins):
+        one.add_argument("path", metavar="FILE.study", type=Path)
+        text = "also draw it, as .svg, .png or .pdf (needs robbdd-tools[plots])"
+        one.add_argument("--plot", metavar="FILE", type=Path, help=text)
+        _allow_store(one)
     _add_plan(commands.add_parser("plan", help="print how many executions a wanted interval or comparison needs"))
     return run, resume
 
@@ -45,6 +58,10 @@ def _add_plan(plan: argparse.ArgumentParser) -> None:
     plan.add_argument("--power", metavar="P", type=_between, default=0.8, help="probability to show it (default: 0.8)")
     plan.add_argument("--level", metavar="P", type=_between, default=0.95, help="confidence level (default: 0.95)")
     plan.set_defaults(command=_plan)
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def _between(text: str) -> float:
@@ -86,6 +103,18 @@ def _export(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.study import export_rows
 
     return export_rows(options.path, options.output, options.store)
+
+
+def _outcomes(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.study_results import print_outcomes
+
+    return print_outcomes(options.path, options.store, options.by, options.plot)
+
+
+def _margins(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.study_results import print_margins
+
+    return print_margins(options.path, options.store, options.clause, options.by, options.plot)
 
 
 def _plan(options: argparse.Namespace) -> int:

@@ -111,14 +111,16 @@ def values_words(spec: ScenarioSpec) -> str:
 
 def value_words(name: str, value: object) -> str:
     """Return a variable and its value as text, for example ``thing = cube0``. Both are given with their prefix."""
-    return f"{_variable(name)} = {_local(value)}"
+    return f"{variable_word(name)} = {value_word(value)}"
 
 
-def _variable(name: str) -> str:
+def variable_word(name: str) -> str:
+    """Return the name of a variable as written in its template."""
     return name.rsplit(":", 1)[-1].removeprefix("var-")
 
 
-def _local(value: object) -> str:
+def value_word(value: object) -> str:
+    """Return a value as text, without its prefix."""
     if isinstance(value, list):
-        return "{" + ", ".join(_local(entry) for entry in cast(list[object], value)) + "}"
+        return "{" + ", ".join(value_word(entry) for entry in cast(list[object], value)) + "}"
     return value.rsplit(":", 1)[-1] if isinstance(value, str) else str(value)

@@ -1,0 +1,118 @@
+"""Count the executions of a study by the first violated clause, and collect the margins of a clause."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.report import value_word, variable_word
+
+HOLDS, UNKNOWN = "holds", "unknown"
+_LEVEL = "level."
+_EXECUTION = ("scenario", "execution", "repetition", "seed")
+
+Row = Mapping[str, Any]
+"""A clause of an execution, as exported."""
+
+
+class NoSuchFactor(RobbddError):
+    """A study has no factor, variable or clause of a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutcomeTable:
+    """How many executions ended how.
+
+    - ``factors``: the names of the factors.
+    - ``rows``: a combination of their levels, as words, for each row of ``counts``.
+    - ``outcomes``: for each column ``holds``, the name of the first violated clause, or ``unknown``.
+    - ``counts``: executions, rows × columns.
+    """
+
+    factors: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    outcomes: tuple[str, ...]
+    counts: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """The margins of a clause in executions that hold, in ``unit``, by the levels of a factor as words."""
+
+    clause: str
+    factor: str
+    unit: str
+    levels: Mapping[str, Sequence[float]]
+
+
+def outcome_table(rows: Iterable[Row], by: Sequence[str] = ()) -> OutcomeTable:
+    """Count executions by the levels of some factors or variables, and by what decided them.
+
+    The first violated clause is the first in the order of the scenario, at which behave would stop. Without names, all
+    factors with several levels are used. Raises ``NoSuchFactor``.
+    """
+    executions = [(levels, outcome) for levels, outcome in _executions(rows)]
+    factors = tuple(by) or _varied(levels for levels, _ in executions)
+    for name in factors:
+        _refuse_unknown(name, (levels for levels, _ in executions))
+    counts: dict[tuple[str, ...], dict[str, int]] = {}
+    found: dict[str, None] = {}
+    for levels, outcome in executions:
+        cell = counts.setdefault(tuple(levels.get(name, "") for name in factors), {})
+        cell[outcome] = cell.get(outcome, 0) + 1
+        found[outcome] = None
+    violated = [outcome for outcome in found if outcome not in (HOLDS, UNKNOWN)]
+    outcomes = (HOLDS, *violated, *(one for one in (UNKNOWN,) if one in found))
+    table = tuple(tuple(cell.get(outcome, 0) for outcome in outcomes) for cell in counts.values())
+    return OutcomeTable(factors, tuple(counts), outcomes, table)
+
+
+def margins(rows: Iterable[Row], clause: str, factor: str) -> Margins:
+    """Return the margins of a clause in executions whose clauses all hold; raises ``NoSuchFactor``."""
+    found: dict[str, list[float]] = {}
+    unit, known = "", dict[str, None]()
+    every: list[Mapping[str, str]] = []
+    for row in rows:
+        known[row["clause"]] = None
+        if row["clause"] == clause:
+            levels = _levels(row)
+            every.append(levels)
+            if row["scenario_verdict"] == HOLDS and row["margin"] is not None:
+                unit = row["unit"]
+                found.setdefault(levels.get(factor, ""), []).append(float(row["margin"]))
+    if clause not in known:
+        raise NoSuchFactor(f"the study has no clause '{clause}'; it has {', '.join(known)}")
+    _refuse_unknown(factor, every)
+    return Margins(clause, factor, unit, found)
+
+
+def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, str], str]]:
+    """Yield the levels of each execution, and what decided it."""
+    for _, group in groupby(rows, key=lambda row: tuple(row[name] for name in _EXECUTION)):
+        clauses = list(group)
+        first = next((row for row in clauses if row["verdict"] == Outcome.VIOLATED), None)
+        verdict = clauses[0]["scenario_verdict"]
+        yield _levels(clauses[0]), verdict if first is None else str(first["clause"])
+
+
+def _levels(row: Row) -> Mapping[str, str]:
+    named = ((name.removeprefix(_LEVEL), value) for name, value in row.items() if name.startswith(_LEVEL))
+    return {variable_word(name): value_word(value) for name, value in named}
+
+
+def _varied(executions: Iterable[Mapping[str, str]]) -> tuple[str, ...]:
+    levels: dict[str, set[str]] = {}
+    for execution in executions:
+        for name, value in execution.items():
+            levels.setdefault(name, set()).add(value)
+    return tuple(name for name, values in levels.items() if len(values) > 1)
+
+
+def _refuse_unknown(name: str, executions: Iterable[Mapping[str, str]]) -> None:
+    known = dict.fromkeys(factor for levels in executions for factor in levels)
+    if name not in known:
+        raise NoSuchFactor(f"the study has no factor or variable '{name}'; it has {', '.join(known)}")
