@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench docs playground package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench study docs playground package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -42,6 +42,20 @@ setup-editors:
 	tests/editors/neovim/setup.sh
 	tests/editors/emacs/setup.sh
 	tests/editors/workbench/setup.sh
+
+# The experiment of the RobBDD paper, its sensitivity, and the same with the catalog's behaviour: docs/study.md
+study: $(READY)
+	mkdir -p build/study
+	for name in paper planned sensitivity; do \
+		$(BIN)/robbdd study run examples/study/$$name.study --restart --store build/study > build/study/$$name.txt; \
+		[ $$? -le 1 ] || exit 2; \
+	done
+	$(BIN)/robbdd study outcomes examples/study/paper.study --by robot,range,scale --store build/study --plot build/study/study-outcomes.svg
+	$(BIN)/robbdd study margins examples/study/paper.study --clause speed --by robot --store build/study --plot build/study/study-speed.svg
+	$(BIN)/robbdd study outcomes examples/study/planned.study --by robot,range,scale --store build/study --plot build/study/study-planned.svg
+	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,travel --store build/study
+	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,speed --store build/study
+	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,friction --store build/study
 
 # A bag of ROS 2 to try `robbdd judge LOG` with: build/sample-log (docs/logs.md)
 sample-log: $(READY)

@@ -40,7 +40,7 @@ SECTIONS = {
         "graph",
         "limits",
     ),
-    "Explanation": ("language/design", "compatibility", "graph-differences"),
+    "Explanation": ("study", "language/design", "compatibility", "graph-differences"),
     "Project": ("performance", "reliability", "mutants", "ARCHITECTURE", "CONTRIBUTING", "SECURITY"),
 }
 """The table of contents; the examples are added from their folders."""
