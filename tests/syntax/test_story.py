@@ -15,7 +15,7 @@ from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
-from robbdd_tools.syntax.story_cut import cut_story, forget_scan, quotes_braces
+from robbdd_tools.syntax.story_cut import cut_story, forget_scan, quotes_cuts
 from robbdd_tools.syntax.symbols import references, symbols
 from robbdd_tools.syntax.textx import parse_with_textx
 from robbdd_tools.syntax.to_trees import convert
@@ -149,10 +149,10 @@ def test_a_superfluous_brace_in_a_scenario_is_one_error() -> None:
     assert "unexpected '}'" in fault.message
 
 
-@pytest.mark.parametrize("quoted", ["\n    Scenario x {\n    }", "\n}{"])
+@pytest.mark.parametrize("quoted", ["\n    Scenario x {\n    }", "\n}{", "\nScenario e"])
 def test_a_string_of_several_lines_may_quote_a_scenario_or_braces(quoted: str) -> None:
     text = STORY.replace('"parts fetched"', f'"parts fetched:{quoted}"')
-    assert quotes_braces(text)
+    assert quotes_cuts(text)
     read = parse_declaration("bdd", text)
     assert read.faults == ()
     assert [symbol.name for symbol in read.symbols] == ["fetching", "bench-to-tray"]

@@ -11,7 +11,7 @@ from robbdd_tools.syntax.piece import read_piece
 from robbdd_tools.syntax.salvage import salvage, with_lost
 from robbdd_tools.syntax.split import forget_scans
 from robbdd_tools.syntax.story import forget_scenarios, read_story
-from robbdd_tools.syntax.story_cut import cut_story, quotes_braces
+from robbdd_tools.syntax.story_cut import cut_story, quotes_cuts
 from robbdd_tools.syntax.symbols import references, symbols
 
 CACHED_LETTERS = 100_000
@@ -66,7 +66,7 @@ def _parsed(language: str, text: str) -> Declaration:
     if cut is None:
         return _whole(language, text)
     found = read_story(cut)
-    if found.faults and quotes_braces(text):
+    if found.faults and quotes_cuts(text):
         whole = _whole(language, text)
         return found if whole.faults else whole
     return found

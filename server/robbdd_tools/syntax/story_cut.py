@@ -20,7 +20,7 @@ _SCANNER = re.compile(
     rf"|(?<![\w\-.<])(?P<scenario>Scenario(?![\w\-])(?P<header>(?:\s+Variant(?=\s+{_NAME}))?\s+{_NAME}\s*{{)?))"
 )
 _LONG_STRINGS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
-_BRACE = re.compile(r"[{}]")
+_CUTTING = re.compile(r"[{}]|\bScenario\b")
 _STORY = re.compile(r"User\s+Story\b")
 
 
@@ -130,12 +130,12 @@ def forget_scan() -> None:
     _latest_scan = None
 
 
-def quotes_braces(text: str) -> bool:
-    """Return whether a multi-line string contains braces, which ``cut_story`` takes for those of a scenario.
+def quotes_cuts(text: str) -> bool:
+    """Return whether a multi-line string contains a brace or *Scenario*, which ``cut_story`` takes for a scenario's.
 
     An unclosed quote, as while typing, looks the same.
     """
-    return any("\n" in match[0] and _BRACE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
+    return any("\n" in match[0] and _CUTTING.search(match[0]) for match in _LONG_STRINGS.finditer(text))
 
 
 def _starts_line(text: str, offset: int) -> bool:
