@@ -10,16 +10,16 @@ const UNREACHABLE = "panda cannot reach a free place";
 const NEVER = `event evt-pick-end never occurred: ${UNREACHABLE}`;
 const BECAUSE: Because = { clause: "https://x/carry", position: 1, words: "unknown because of carry" };
 
-test("a consequence has errored and names its cause, without a message of its own", () => {
+test("a consequence is skipped and names its cause, unless that one is not shown", () => {
   const judged = {
     verdict: "unknown", failure: `${NEVER} (unknown)`, robustness: null, unit: "", at: null, reason: NEVER,
   } as const;
   const outcome = outcomeOf(judged, "thing = cube");
   for (const none of [undefined, null]) {
-    assert.equal(folded(outcome, none), outcome);
+    assert.equal(folded(outcome, none, true), outcome);
   }
-  const text = "unknown because of carry";
-  assert.deepEqual(folded(outcome, BECAUSE), { state: "errored", note: text, failure: { text, folded: true } });
+  assert.equal(folded(outcome, BECAUSE, false), outcome);
+  assert.deepEqual(folded(outcome, BECAUSE, true), { state: "skipped", note: "unknown because of carry" });
 });
 
 test("the report of a run has the reason of a cause, and at its consequences the name of the cause", () => {

@@ -181,6 +181,7 @@ export function recorded(): { told: string[]; sink: Sink<Node> } {
     failed: (item, { text }, place) =>
       told.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"}`),
     errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
+    skipped: (item) => told.push(`skipped ${label(item)}`),
     output: () => undefined,
     end: () => told.push("end"),
   };

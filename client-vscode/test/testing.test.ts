@@ -160,7 +160,8 @@ test("a run shows clauses of unopened files, and ends", async () => {
   const { told, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => (clock += 10));
   const judged = { robustness: 0.01, unit: "m", at: 1 };
-  const carry: Because = { clause: "t:held", position: 0, words: "unknown because of held" };
+  const because: Because = { clause: "t:placed", position: 1, words: "unknown because of placed" };
+  const unknown = { verdict: "unknown", failure: "never held (unknown)" } as const;
   for (const said of [
     message("RunStarted"),
     message("ScenarioStarted", { values: "part = cube2", variation: 2, source: at(9) }),
@@ -168,7 +169,8 @@ test("a run shows clauses of unopened files, and ends", async () => {
     message("ClauseJudged", { ...judged, ...words("held", 0) }),
     message("ClauseStarted", { line: 8, ...words("placed", 1) }),
     message("ClauseJudged", { ...judged, verdict: "violated", robustness: -0.02, failure: "violated by −20 mm", ...words("placed", 1) }),
-    message("ClauseJudged", { verdict: "unknown", failure: "held it (unknown)", because: carry, ...words("moved", 2) }),
+    message("ClauseJudged", { ...unknown, because, ...words("moved", 2) }),
+    message("ClauseJudged", { ...unknown, because: { ...because, position: 0 }, ...words("rested", 3) }),
   ]) {
     follower.take({ run: "1", uri: FILE, message: said });
   }
@@ -178,7 +180,8 @@ test("a run shows clauses of unopened files, and ends", async () => {
     "passed part = cube2 / Then held 10",
     "started part = cube2 / Then placed",
     "failed part = cube2 / Then placed violated by −20 mm [part = cube2] @3",
-    "errored part = cube2 / Then moved unknown because of held",
+    "skipped part = cube2 / Then moved",
+    "errored part = cube2 / Then rested never held (unknown) [part = cube2]",
     "end",
   ]);
   // Listing the scenarios afterwards keeps the run's results.
@@ -234,6 +237,24 @@ test("imported results are shown by position, with their words and their share o
     `failed part = cube2 / Then placed ${PUSHED} [part = cube2] @3`,
   ]);
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed").description, "−3.0 mm · cube is placed");
+});
+
+test("a clause that is unknown because of one that failed is skipped, so that its scenario has failed", async () => {
+  const world = new World();
+  const { told, sink } = recorded();
+  const failed = { ...held, clause: "t:held", verdict: "violated", failure: "dropped (violated)", stale: false } as const;
+  const because = { clause: "t:held", position: 0, words: "unknown because of held" };
+  const unknown = { ...failed, clause: "t:placed", position: 1, verdict: "unknown", failure: "dropped (unknown)", because } as const;
+  await showResults(world.tree, [{ ...found, clauses: [failed, unknown] }], sink);
+  const byName = [failed, unknown].map((one) => ({ ...one, position: null, because: one.because && { ...because, position: null } }));
+  await showResults(world.tree, [{ ...found, clauses: byName }], sink);
+  const shown = ["failed part = cube2 / Then held dropped (violated) [part = cube2] @3", "skipped part = cube2 / Then placed"];
+  assert.deepEqual(told, [...shown, ...shown]);
+  assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed").description, "unknown because of held · cube is placed");
+  told.length = 0;
+  // Without its cause it has the error itself: a scenario of skipped clauses would have passed.
+  await showResults(world.tree, [{ ...found, clauses: [{ ...failed, verdict: "holds" }, unknown] }], sink);
+  assert.match(told[1] ?? "", /^errored .*Then placed dropped \(unknown\)/);
 });
 
 test("kept results are shown by IRI; stale ones are told, and variants that are gone are passed over", async () => {

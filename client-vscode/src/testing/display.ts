@@ -44,9 +44,14 @@ export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined)
         run.failed(item, located(new vscode.TestMessage(text), place), duration);
       });
     },
-    errored: (item, { text, folded }, place, duration) => {
+    errored: (item, { text }, place, duration) => {
       open(() => {
-        run.errored(item, folded === true ? [] : located(new vscode.TestMessage(text), place), duration);
+        run.errored(item, located(new vscode.TestMessage(text), place), duration);
+      });
+    },
+    skipped: (item) => {
+      open(() => {
+        run.skipped(item);
       });
     },
     output: (line, item) => {

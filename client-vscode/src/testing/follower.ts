@@ -13,6 +13,7 @@ export interface Sink<I> {
   passed(item: I, duration?: number): void;
   failed(item: I, failure: Failure, place: Place | null, duration?: number): void;
   errored(item: I, failure: Failure, place: Place | null, duration?: number): void;
+  skipped(item: I): void;
   output(line: string, item?: I, place?: Place | null): void;
   end(): void;
 }
@@ -20,6 +21,8 @@ export interface Sink<I> {
 interface Begun<I> {
   readonly item: I;
   readonly values: string;
+  /** Positions of the clauses that have failed or have an error. */
+  readonly failing: Set<number>;
   /** When the judgement of the current clause began, ms. */
   since: number;
 }
@@ -92,7 +95,7 @@ export class RunFollower<I extends Item<I>> {
     const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
-      this.scenarios.set(message.index, { item, values: message.values, since: instant });
+      this.scenarios.set(message.index, { item, values: message.values, failing: new Set(), since: instant });
     }
   }
 
@@ -114,7 +117,11 @@ export class RunFollower<I extends Item<I>> {
     if (scenario === undefined || item === undefined || message.cancelled) {
       return;
     }
-    const judged = folded(outcomeOf(message, scenario.values), message.because);
+    const { because } = message;
+    const judged = folded(outcomeOf(message, scenario.values), because, because !== null && scenario.failing.has(because.position));
+    if (judged.failure !== undefined) {
+      scenario.failing.add(message.position);
+    }
     const outcome = this.worst.add(item, judged, message.robustness);
     this.tree.note(item, outcome.note);
     showOutcome(this.sink, item, outcome, message.source, instant - scenario.since);
@@ -134,7 +141,9 @@ export function showOutcome<I>(
   place: Place | null,
   duration: number | undefined,
 ): void {
-  if (failure === undefined) {
+  if (state === "skipped") {
+    sink.skipped(item);
+  } else if (failure === undefined) {
     sink.passed(item, duration);
   } else if (state === "failed") {
     sink.failed(item, failure, place, duration);

@@ -19,12 +19,11 @@ export interface Judged {
 export interface Failure {
   /** Text shown next to the clause, the reason first. */
   readonly text: string;
-  /** The failure is a consequence of another clause, which has the reason; this one gets no message of its own. */
-  readonly folded?: true;
 }
 
 export interface Outcome {
-  readonly state: "passed" | "failed" | "errored";
+  /** `skipped` is the state of a clause that is unknown only because of another one, which has the reason. */
+  readonly state: "passed" | "failed" | "errored" | "skipped";
   /** Note after the clause's name in the tree. */
   readonly note: string;
   readonly failure?: Failure;
@@ -50,9 +49,15 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
   }
 }
 
-/** The outcome of a clause that is unknown because of another one; if there is no such cause, `outcome` itself. */
-export function folded(outcome: Outcome, because: Because | Immutable<FoundBecause> | null | undefined): Outcome {
-  return because ? { state: "errored", note: because.words, failure: { text: because.words, folded: true } } : outcome;
+/**
+ * The outcome of a clause that is unknown because of another one; if there is no such cause, `outcome` itself.
+ *
+ * An item of the tree has the worst state of those below it, and the editor takes *errored* for worse than *failed*: with
+ * errors in the consequences of a violated clause, a failed scenario would be shown as errored. `shown` says that the
+ * cause has a failure or an error in the same scenario; without it, a scenario with a skipped clause would have passed.
+ */
+export function folded(outcome: Outcome, because: Because | Immutable<FoundBecause> | null | undefined, shown: boolean): Outcome {
+  return because && shown ? { state: "skipped", note: because.words } : outcome;
 }
 
 /** `values` distinguish the scenario from others shown at the same clause. */

@@ -46,7 +46,7 @@ export async function showResults<I extends Item<I>>(
       for (const item of itemsOf(tree, scenario, clause)) {
         // Only whole executions are timed: each clause gets an equal share, so that the sum is right.
         const share = whole === undefined ? undefined : whole / found.clauses.length;
-        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), clause.because));
+        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), clause.because, isCauseShown(clause, found.clauses)));
         tree.note(item, outcome.note);
         showOutcome(sink, item, outcome, tree.about(item)?.place ?? null, share);
         if (found.stale || clause.stale) {
@@ -83,6 +83,13 @@ function itemsOf<I extends Item<I>>(tree: TestTree<I>, scenario: I, found: Found
     tests: [],
   };
   return [tree.clause(scenario, found.position, written)];
+}
+
+/** Whether the cause of a clause is one of these, with a failure or an error of its own. */
+function isCauseShown({ because }: FoundClause, clauses: readonly FoundClause[]): boolean {
+  const isCause = ({ clause, position }: FoundClause) =>
+    because?.position === null ? clause === because.clause : position === because?.position;
+  return clauses.some((one) => isCause(one) && one.verdict !== "holds" && one.because === null);
 }
 
 function outcomeOf(found: FoundClause, values: string): Outcome {

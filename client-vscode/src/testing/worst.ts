@@ -8,7 +8,7 @@ interface Seen {
   margin: number;
 }
 
-const BADNESS = { failed: 0, errored: 1, passed: 2 } as const;
+const BADNESS = { failed: 0, errored: 1, skipped: 2, passed: 3 } as const;
 
 /** A clause gets its worst verdict in a run, and the number of times it held. */
 export class Worst<I> {
