@@ -4,12 +4,15 @@ import { SAMPLES } from "./harness/checkout.mjs";
 import { EXECUTIONS, FAILURES, writeFailures } from "./harness/failures.mjs";
 import { TRY, eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
+import { TestingView } from "./harness/testingView.mjs";
 import { verdictAt } from "./harness/verdicts.mjs";
 import { EDITOR } from "./harness/workbench.mjs";
 
 /** Prefixes, addresses and generated names are for machines. */
 const FOR_MACHINES = /https?:|\b(?:env|t|t-\d+|sim|exec):\w|when-bhv|\.then\.|!=/;
 
+/** The verdict of each scenario in the stored run, by its name. @type {Map<string, string>} */
+let verdicts;
 /** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
@@ -29,7 +32,20 @@ step("executions that fail for different reasons run to their end", async () => 
   const { scenarios } = await session.runOf(() => workbench.command("RobBDD: Run Scenarios of This File"));
   assert.equal(scenarios.length, Object.keys(FAILURES).length);
   assert.deepEqual(scenarios.filter(({ verdict }) => verdict === "holds").map(({ name }) => name), []);
+  verdicts = new Map(scenarios.map(({ name, verdict }) => [name.split(/[:/#]| -- /).at(-2), verdict]));
   await workbench.changeScheme("dark");
+});
+
+step("what has failed and what has an error is the same in the Testing view as in the results", async () => {
+  const tests = new TestingView(workbench);
+  await tests.show();
+  await tests.expand(EXECUTIONS);
+  for (const name of Object.keys(FAILURES)) {
+    // A row has its label, then its description.
+    await tests.turns(verdicts.get(name) === "violated" ? "failed" : "error", `run-${name}${name}-story.${name}`);
+  }
+  assert.deepEqual([...new Set(verdicts.values())].sort(), ["unknown", "violated"]);
+  await workbench.screenshot("causes-tests");
 });
 
 for (const [name, { line, cause, margin }] of Object.entries(FAILURES)) {
