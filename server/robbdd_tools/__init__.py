@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.judging import Judged, NothingToJudge, judge
     from robbdd_tools.workbench.log_judging import JudgedLog, NotOneScenario, judge_log
-    from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, NothingToRun, load
+    from robbdd_tools.workbench.model import Model, ModelErrors, NothingToRun, load
+    from robbdd_tools.workbench.named_files import NotAModel
     from robbdd_tools.workbench.plan import Coverage, Plan
     from robbdd_tools.workbench.replaying import CannotReplay, Replayed, ReplayedTrace, replay
     from robbdd_tools.workbench.run import Run
@@ -61,7 +62,7 @@ _HOMES = {
     "ModelErrors": "workbench.model",
     "NoSuchRun": "run.store",
     "NotAGate": "campaign.gate",
-    "NotAModel": "workbench.model",
+    "NotAModel": "workbench.named_files",
     "NotOneScenario": "workbench.log_judging",
     "NothingShared": "campaign.matched_executions",
     "NothingToJudge": "workbench.judging",

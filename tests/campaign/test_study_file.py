@@ -11,7 +11,7 @@ from kit import EXAMPLES
 from robbdd_tools.campaign.study_batches import batches
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.cli import main
-from robbdd_tools.workbench.model import NotAModel
+from robbdd_tools.workbench.named_files import NotAModel
 
 HEAD = 'import "m.bdd"\nStudy s {\n'
 
@@ -138,6 +138,39 @@ def test_check_reports_studies_with_other_models(
     assert last.startswith("2 files: 1 error")
     write_study(tmp_path)
     assert main(["check", "x.study"]) == 0
+
+
+def test_check_of_a_folder_includes_its_studies_and_reports_each_error_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_study(tmp_path, f"{HEAD}sample: 0}}")
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", "."]) == 1
+    first, *_, last = capsys.readouterr().out.splitlines()
+    assert first == "x.study:3:9: error: 'sample' is a whole number from 1 to 1000000, not 0 [syntax]"
+    assert last.startswith("3 files: 1 error")
+    write_study(tmp_path, model="Task (ns=x) t")
+    assert main(["check", "."]) == 1
+    errors = [line for line in capsys.readouterr().out.splitlines() if ": error: " in line]
+    assert [line.partition(": error: ")[0] for line in errors] == ["m.bdd:1:10"]
+    (tmp_path / "m.bdd").unlink()
+    (tmp_path / "lab.scene").unlink()
+    assert main(["check", "."]) == 1
+    assert capsys.readouterr().out.splitlines()[0] == "x.study:1:9: error: there is no file m.bdd [study]"
+
+
+def test_format_lays_out_the_studies_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = write_study(tmp_path, 'import   "m.bdd"\nStudy s {\nrepeat : 3 // times\n  factor  scene:{"a","b"}\n}')
+    assert main(["format", str(tmp_path)]) == 0
+    assert f"{study}: changed" in capsys.readouterr().out
+    expected = 'import "m.bdd"\nStudy s {\n    repeat: 3  // times\n    factor scene:{"a", "b"}\n}\n'
+    assert study.read_text(encoding="utf-8") == expected
+
+
+def test_a_study_is_no_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = write_study(tmp_path)
+    assert main(["run", str(study)]) == 2
+    assert "is not a model: its name must end in one of .bdd" in capsys.readouterr().err
 
 
 def test_a_missing_study_is_no_study(tmp_path: Path) -> None:

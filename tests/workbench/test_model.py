@@ -8,7 +8,8 @@ import pytest
 
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.workbench.model import ModelErrors, NotAModel, NothingToRun, load
+from robbdd_tools.workbench.model import ModelErrors, NothingToRun, load
+from robbdd_tools.workbench.named_files import NotAModel
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 

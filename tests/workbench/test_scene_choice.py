@@ -19,7 +19,8 @@ from robbdd_tools.lsp.judged_scenarios import judged_scenario
 from robbdd_tools.lsp.run_options import BadSetting, RunOptions, select
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.run.user_code import refusal
-from robbdd_tools.workbench.model import ModelErrors, NotAModel
+from robbdd_tools.workbench.model import ModelErrors
+from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan
 from robbdd_tools.workbench.rerun import failed_in
 from robbdd_tools.workbench.scene_choice import SceneChoiceError

@@ -14,14 +14,15 @@ from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes, path_to_uri, read_text
 from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
-from robbdd_tools.campaign.study_text import Factor, StudyText, Word, read_study
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.run_policy import TIMEOUT
+from robbdd_tools.syntax.study_text import STUDY, Factor, StudyText, Word, read_study
 from robbdd_tools.workbench.diagnostics import Finding, Place
-from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, load_all, read_instances
+from robbdd_tools.workbench.model import Model, ModelErrors, load_all, read_instances
+from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan, Selection
 
-SUFFIX = ".study"
+SUFFIX = f".{STUDY}"
 BATCH = 500
 """Default number of executions after which results are moved to the study's store."""
 MOST_CELLS = 1000

@@ -10,17 +10,18 @@ from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.workbench.model import NotAModel, named_files
+from robbdd_tools.syntax.study_text import STUDY
+from robbdd_tools.workbench.named_files import NotAModel, named_files
 
 
 def format_models(paths: Sequence[Path], check: bool) -> int:
-    """Format files and the models in folders.
+    """Format files and the models and studies in folders.
 
     With ``check``, no file is written: the files that would change are listed, and if there are any, the exit code is
     1.
     """
     try:
-        files = named_files(paths)
+        files = named_files(paths, (STUDY,))
     except NotAModel as error:
         return fail(str(error))
     changed: list[Path] = []

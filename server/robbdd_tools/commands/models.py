@@ -13,7 +13,8 @@ from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.project import Project
 from robbdd_tools.workbench.diagnostics import Finding, findings
-from robbdd_tools.workbench.model import ModelFile, NotAModel, load
+from robbdd_tools.workbench.model import ModelFile, load
+from robbdd_tools.workbench.named_files import NotAModel
 
 HOSTS = "context-hosts"
 HOSTS_FORM = 'a list of host names, such as ["example.org"]'

@@ -19,6 +19,7 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
     "ktree": ("ktree",),
     "scenex": ("ktree", "scene", "scenex"),
     "bddx": ("bdd", "scenex"),
+    "study": ("bdd", "bddx"),
 }
 """The kinds of file that each kind may import."""
 BACKSLASH = "\\"

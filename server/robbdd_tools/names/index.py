@@ -16,6 +16,7 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import Placed
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
 from robbdd_tools.syntax.split import Chunk, resplit, split
+from robbdd_tools.syntax.study_text import STUDY, read_study
 
 if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Symbol
@@ -65,14 +66,19 @@ class FileIndex:
 
 @lru_cache(maxsize=20_000)
 def language_of(uri: str) -> str:
-    """Return the language of a file according to its extension; ``""`` for other files."""
+    """Return the language of a file according to its extension; ``""`` for other files.
+
+    ``study`` is the language of studies, which declare nothing: of them, the index has the imports only.
+    """
     ending = PurePosixPath(uri).suffix.removeprefix(".").lower()
-    return ending if ending in LANGUAGES else ""
+    return ending if ending in LANGUAGES or ending == STUDY else ""
 
 
 def index_file(document: Document, previous: FileIndex | None = None) -> FileIndex:
     """Split and parse a document. Parts that have not changed since the ``previous`` revision are reused."""
     language = language_of(document.uri)
+    if language == STUDY:
+        return FileIndex(document, (), (), make_table([]), _study_imports(document))
     if not language:
         chunks: tuple[Chunk, ...] = ()
     elif previous is None:
@@ -91,6 +97,8 @@ def index_file(document: Document, previous: FileIndex | None = None) -> FileInd
 def imports_of(document: Document) -> tuple[ImportPath, ...]:
     """Return the imports of a file. Nothing else in the file is parsed."""
     language = language_of(document.uri)
+    if language == STUDY:
+        return _study_imports(document)
     chunks = (
         chunk for chunk in (split(language, document.text) if language else ()) if chunk.text.startswith("import")
     )
@@ -99,6 +107,14 @@ def imports_of(document: Document) -> tuple[ImportPath, ...]:
 
 # Other escapes are of quotes and backslashes only.
 _WINDOWS_PATH = re.compile(r"\\[^\\\"']")
+
+
+def _study_imports(document: Document) -> tuple[ImportPath, ...]:
+    found: list[ImportPath] = []
+    for word in read_study(document)[0].imports:
+        uri = import_uri(document.uri, word.text)
+        found.append(ImportPath(word.span, word.text, uri, uri))
+    return tuple(found)
 
 
 def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[ImportPath, ...]:

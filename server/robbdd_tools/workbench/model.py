@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,11 +13,10 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.diagnostics import all_diagnostics, text_diagnostics
-from robbdd_tools.graph.write.foreign_imports import GRAPH_FORMATS, graph_format
-from robbdd_tools.names.index import language_of
+from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.project import Project, Snapshot
-from robbdd_tools.syntax.parse import LANGUAGES
 from robbdd_tools.workbench.diagnostics import Finding, Place, Places, findings
+from robbdd_tools.workbench.named_files import NotAModel, named_files, refuse_other_files
 from robbdd_tools.workbench.scene_choice import SceneChoiceError
 
 if TYPE_CHECKING:
@@ -27,10 +26,6 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.plan import Plan
 
 NO_SCENARIO = "the model has no scenario to run"
-
-
-class NotAModel(RobbddError):
-    """The file does not exist, or its name does not have the ending of a model."""
 
 
 class ModelErrors(RobbddError):
@@ -259,7 +254,7 @@ def load(path: str | os.PathLike[str], *more: str | os.PathLike[str], text: str 
         return load_all([start, *map(Path, more)])
     if more:
         raise ValueError("a text replaces one file: load it alone")
-    _refuse_other_files([start], must_exist=False)
+    refuse_other_files([start], must_exist=False)
     project = Project()
     project.open(path_to_uri(start), 0, text)
     return _model(start, project, [start])
@@ -308,41 +303,3 @@ def read_instances(paths: Iterable[Path]) -> tuple[SceneInstance, ...]:
 def _model(path: Path, project: Project, files: Iterable[Path]) -> Model:
     snapshot = project.snapshot()
     return Model(path, tuple(ModelFile(snapshot, path_to_uri(file), str(file)) for file in files))
-
-
-def named_files(paths: Sequence[Path]) -> list[Path]:
-    """Return the files, with each folder replaced by the model files below it, in alphabetical order.
-
-    Hidden folders, installed packages and virtual environments are skipped. Raises ``NotAModel``.
-    """
-    files: dict[Path, None] = {}
-    for path in paths:
-        if path.is_dir():
-            files |= dict.fromkeys(sorted(_own_files(path)))
-        else:
-            files.setdefault(path)
-    if not files:
-        raise NotAModel(f"there is no model in {', '.join(map(str, paths))}")
-    _refuse_other_files(files)
-    return list(files)
-
-
-def _own_files(folder: Path) -> Iterator[Path]:
-    for parent, folders, names in os.walk(folder):
-        here = Path(parent)
-        folders[:] = [name for name in folders if not _is_foreign(here / name)]
-        yield from (here / name for name in names if Path(name).suffix[1:] in LANGUAGES)
-
-
-def _is_foreign(folder: Path) -> bool:
-    return folder.name.startswith(".") or folder.name == "node_modules" or (folder / "pyvenv.cfg").is_file()
-
-
-def _refuse_other_files(paths: Iterable[Path], *, must_exist: bool = True) -> None:
-    for path in paths:
-        if language_of(path.name) or graph_format(path.name) or path.is_dir():
-            continue
-        if must_exist and not path.exists():
-            raise NotAModel(f"there is no file or folder {path}")
-        endings = ", ".join(f".{ending}" for ending in (*LANGUAGES, *GRAPH_FORMATS))
-        raise NotAModel(f"{path} is not a model: its name must end in one of {endings}")

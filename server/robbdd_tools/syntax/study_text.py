@@ -29,6 +29,8 @@ _TOKEN = re.compile(
     r"""(?P<space>\s+|//[^\n\r]*)|(?P<text>"[^"\n\r]*"|'[^'\n\r]*')|(?P<reference><[^<>\n\r]*>)"""
     r"""|(?P<number>-?\d+(?:\.\d+)?(?![\w.]))|(?P<name>[^\W\d][\w-]*)|(?P<sign>[{}:,])|(?P<other>[^\s{}:,<>"']+|.)"""
 )
+STUDY = "study"
+"""The ending of the names of studies, without the dot."""
 MOST_REPETITIONS = 1_000_000
 """Limit of ``repeat``, ``first`` and ``sample``."""
 MOST_BATCH = 10_000
