@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
@@ -21,6 +22,9 @@ from robbdd_tools.workbench.diagnostics import Finding, Place
 from robbdd_tools.workbench.model import Model, ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan, Selection
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
 
 SUFFIX = f".{STUDY}"
 BATCH = 500
@@ -103,6 +107,30 @@ class Study:
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
 
+class StudyModels(Protocol):
+    """Where a study's models are read from."""
+
+    def load(self, paths: Sequence[Path]) -> Model:
+        """Return the models. Raises ``NotAModel``."""
+        ...
+
+    def instances(self, paths: Sequence[Path]) -> tuple[SceneInstance, ...]:
+        """Return the scene instances of files, as ``read_instances`` does."""
+        ...
+
+
+class ModelsOnDisk(StudyModels):
+    """The models as they are stored."""
+
+    def load(self, paths: Sequence[Path]) -> Model:
+        """Return the models."""
+        return load_all(paths)
+
+    def instances(self, paths: Sequence[Path]) -> tuple[SceneInstance, ...]:
+        """Return the scene instances of files."""
+        return read_instances(paths)
+
+
 def load_study(path: Path) -> Study:
     """Load a study. Its errors are findings. Raises ``NotAModel`` if there is no such file."""
     if path.suffix != SUFFIX:
@@ -112,23 +140,31 @@ def load_study(path: Path) -> Study:
         raise NotAModel(f"{path} cannot be read: {text.reason}")
     document = Document(path_to_uri(path), 0, text)
     content, faults = read_study(document)
-    loader = _Loader(path, document, content)
     if faults:
-        return Study(path, document, content, tuple(map(loader.at, faults)), None, ())
+        return Study(path, document, content, tuple(_found(document, fault) for fault in faults), None, ())
+    loader = StudyLoader(path, document, content, ModelsOnDisk())
     cells = tuple(loader.cells())
-    return Study(path, document, content, tuple(loader.findings), loader.model, () if loader.findings else cells)
+    findings = (*(_found(document, fault) for fault in loader.faults), *loader.broken)
+    return Study(path, document, content, findings, loader.model, () if findings else cells)
 
 
-class _Loader:
-    def __init__(self, path: Path, document: Document, content: StudyText) -> None:
+class StudyLoader:
+    """Finds the combinations of the levels of a study whose form is free of errors.
+
+    ``faults`` are its errors, and ``broken`` those of its models. ``model`` are its models, if they can be run.
+    """
+
+    def __init__(self, path: Path, document: Document, content: StudyText, models: StudyModels) -> None:
         self._folder = path.parent
         self._document = document
         self._content = content
-        self.findings: list[Finding] = []
+        self._models = models
+        self.faults: list[Diagnostic] = []
+        self.broken: tuple[Finding, ...] = ()
         self.model: Model | None = None
 
     def cells(self) -> Iterator[Cell]:
-        """Yield the cells. Errors become findings, and then the cells are incomplete."""
+        """Yield the cells. With errors, the cells are incomplete."""
         self.model = self._model()
         if self.model is None:
             return
@@ -148,15 +184,11 @@ class _Loader:
         for word in self._content.scenarios:
             self._plan(replace(selection, names=[word.text]), word, "scenarios")
         combinations = self._combinations(selection)
-        if not self.findings:
+        if not self.faults:
             for levels, chosen in combinations:
                 plan = self._plan(chosen, self._content.factors[0].levels[0] if levels else None, "factor")
                 if plan is not None:
                     yield Cell(levels, plan)
-
-    def at(self, fault: Diagnostic) -> Finding:
-        """Return a diagnostic with line and column."""
-        return Finding(self._place(fault.span), fault.severity, fault.code, fault.message)
 
     def _model(self) -> Model | None:
         if not self._content.imports:
@@ -166,13 +198,13 @@ class _Loader:
         for word, path in zip(self._content.imports, paths, strict=True):
             if not path.is_file():
                 self._report(word.span, f"there is no file {word.text}")
-        if self.findings:
+        if self.faults:
             return None
         try:
-            model = load_all(paths)
+            model = self._models.load(paths)
             _ = model.runnable
         except ModelErrors as error:
-            self.findings += error.findings
+            self.broken = error.findings
             return None
         except RobbddError as error:
             self._report(self._content.imports[0].span, str(error))
@@ -209,7 +241,7 @@ class _Loader:
         substitutions = {
             factor.implementation.text: level.text for factor, level in cell if factor.implementation is not None
         }
-        return replace(selection, substitutions=substitutions, instances=read_instances(scenes))
+        return replace(selection, substitutions=substitutions, instances=self._models.instances(scenes))
 
     def _plan(self, selection: Selection, word: Word | None, setting: str) -> Plan | None:
         assert self.model is not None
@@ -221,13 +253,15 @@ class _Loader:
             return None
 
     def _report(self, span: Span, message: str) -> None:
-        found = self.at(Diagnostic(self._document.uri, span, Severity.ERROR, "study", message))
-        if found not in self.findings:
-            self.findings.append(found)
+        fault = Diagnostic(self._document.uri, span, Severity.ERROR, "study", message)
+        if fault not in self.faults:
+            self.faults.append(fault)
 
-    def _place(self, span: Span) -> Place:
-        start, end = self._document.position(span.start), self._document.position(span.end)
-        return Place(self._document.uri, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+def _found(document: Document, fault: Diagnostic) -> Finding:
+    start, end = document.position(fault.span.start), document.position(fault.span.end)
+    place = Place(document.uri, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+    return Finding(place, fault.severity, fault.code, fault.message)
 
 
 def _levels(cell: Sequence[tuple[Factor, Word]]) -> Mapping[str, str]:

@@ -11,6 +11,8 @@ from robbdd_tools.checks import run_checks
 from robbdd_tools.checks.graph_files import graph_findings
 from robbdd_tools.checks.superseded import without_superseded
 from robbdd_tools.features.fixes import with_fixes
+from robbdd_tools.features.studies import is_study
+from robbdd_tools.syntax.study_text import read_study
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.shapes.incremental import Validation
@@ -29,6 +31,8 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
+    if is_study(uri):
+        return read_study(analysis.document)[1]
     # Repairs that fail one after another at the end of a text give the same message with different fixes.
     first: dict[object, Diagnostic] = {}
     for found in (*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import cursor_at
+from robbdd_tools.features.studies import is_study, study_name_at
 from robbdd_tools.names.name_parts import find_path, parts_of
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
+    if is_study(uri):
+        return study_name_at(snapshot, uri, offset)
     placed = analysis.part_at(offset)
     if placed is not None:
         inside = offset - placed.offset

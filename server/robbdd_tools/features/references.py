@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.goto_definition import symbol_at
+from robbdd_tools.features.studies import is_study, uses_in_study
 from robbdd_tools.features.used_names import name_of, places_of
 from robbdd_tools.names.types import columns_of
 from robbdd_tools.names.uses import clauses_of
@@ -53,7 +54,8 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
     if found is None or file is None:
         return []
     definition = found[1]
-    spans = set(places_of(snapshot, file, name_of(definition)))
+    own = uses_in_study(snapshot, uri, definition) if is_study(uri) else None
+    spans = set(places_of(snapshot, file, name_of(definition)) if own is None else own)
     written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else set[Span]()
     if definition.uri == uri:
         spans.add(definition.span)
@@ -79,5 +81,7 @@ def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
     """
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         file = snapshot.file(uri)
-        if file is not None:
+        if file is not None and is_study(uri):
+            yield from ((uri, span) for span in uses_in_study(snapshot, uri, definition))
+        elif file is not None:
             yield from ((uri, span) for span in places_of(snapshot, file, name_of(definition)))

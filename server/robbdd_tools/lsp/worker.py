@@ -12,7 +12,9 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.base.memory import collect_rarely, collect_recent
 from robbdd_tools.base.processes import lower_priority
+from robbdd_tools.campaign.edited_study import study_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
+from robbdd_tools.features.studies import is_study
 from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
@@ -99,8 +101,11 @@ class Worker:
 
         try:
             snapshot = self.project.snapshot()
-            found = shape_diagnostics(snapshot, request.uri, request.shapes, validation, is_superseded)
-            found += [] if is_superseded() else self.scenes.findings(snapshot, request.uri)
+            if is_study(request.uri):
+                found = study_diagnostics(self.project, request.uri)
+            else:
+                found = shape_diagnostics(snapshot, request.uri, request.shapes, validation, is_superseded)
+                found += [] if is_superseded() else self.scenes.findings(snapshot, request.uri)
         except Superseded:
             self.left[request.uri] = left + 1
             return None
@@ -117,7 +122,10 @@ class Worker:
         together = snapshot.reachability.cycle(request.uri)
         try:
             found = [entry for uri in together for entry in fast_diagnostics(snapshot, uri)]
-            found += shape_diagnostics(snapshot, request.uri, request.shapes, together=together)
+            if is_study(request.uri):
+                found += study_diagnostics(self.project, request.uri)
+            else:
+                found += shape_diagnostics(snapshot, request.uri, request.shapes, together=together)
             found += [entry for uri in together for entry in self.scenes.findings(snapshot, uri)]
         except Exception as error:  # As above.
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}", together)

@@ -19,7 +19,7 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
     "ktree": ("ktree",),
     "scenex": ("ktree", "scene", "scenex"),
     "bddx": ("bdd", "scenex"),
-    "study": ("bdd", "bddx"),
+    "study": ("bdd", "bddx", "scenex"),
 }
 """The kinds of file that each kind may import."""
 BACKSLASH = "\\"

@@ -110,8 +110,9 @@ _WINDOWS_PATH = re.compile(r"\\[^\\\"']")
 
 
 def _study_imports(document: Document) -> tuple[ImportPath, ...]:
-    found: list[ImportPath] = []
-    for word in read_study(document)[0].imports:
+    """Return the files that a study names: its models, and the scene instances that are levels of a factor."""
+    content, found = read_study(document)[0], list[ImportPath]()
+    for word in (*content.imports, *content.scenes):
         uri = import_uri(document.uri, word.text)
         found.append(ImportPath(word.span, word.text, uri, uri))
     return tuple(found)

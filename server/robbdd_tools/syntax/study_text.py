@@ -63,6 +63,8 @@ class StudyText:
 
     imports: list[Word] = field(default_factory=list[Word])
     name: str = ""
+    head: Span = field(default_factory=lambda: Span(0, 0))
+    """The place of the name; empty if there is none."""
     scenarios: tuple[Word, ...] = ()
     where: Word | None = None
     factors: list[Factor] = field(default_factory=list[Factor])
@@ -70,13 +72,20 @@ class StudyText:
     places: dict[str, Span] = field(default_factory=dict[str, Span])
     """The places of the names of settings."""
 
+    @property
+    def scenes(self) -> tuple[Word, ...]:
+        """The files whose scene instances are levels of a factor."""
+        return tuple(level for one in self.factors if one.implementation is None for level in one.levels)
+
     def whole(self, name: str) -> int | None:
         """Return a setting that is a whole number; ``None`` if it is missing."""
         found = self.numbers.get(name)
         return None if found is None else int(found)
 
 
-class _Token(NamedTuple):
+class Token(NamedTuple):
+    """A token of a study: white space and comments are left out, and the last one has the kind ``end``."""
+
     kind: str
     text: str
     span: Span
@@ -85,7 +94,7 @@ class _Token(NamedTuple):
 class _Unexpected(Exception):
     """The token does not belong here."""
 
-    def __init__(self, token: _Token, message: str) -> None:
+    def __init__(self, token: Token, message: str) -> None:
         super().__init__(message)
         self.token = token
 
@@ -120,7 +129,7 @@ def read_study(document: Document) -> tuple[StudyText, list[Diagnostic]]:
 class _Reader:
     def __init__(self, document: Document) -> None:
         self._uri = document.uri
-        self._tokens = list(_tokens(document.text))
+        self._tokens = list(study_tokens(document.text))
         self._next = 0
         self._found = StudyText()
         self.faults: list[Diagnostic] = []
@@ -132,7 +141,8 @@ class _Reader:
                 self._take()
                 self._found.imports.append(self._text('the path of a model, such as "pick.bdd"'))
             self._expect("Study", "'import' or 'Study'")
-            self._found.name = self._kind("name", "the name of the study").text
+            name = self._kind("name", "the name of the study")
+            self._found.name, self._found.head = name.text, name.span
             self._expect("{")
         except _Unexpected as error:
             self._report(error)
@@ -169,7 +179,7 @@ class _Reader:
         else:
             self._number(word.text)
 
-    def _refuse_twice(self, word: _Token) -> None:
+    def _refuse_twice(self, word: Token) -> None:
         if word.text in self._found.places:
             raise _Unexpected(word, f"'{word.text}' is given twice: remove one of them")
         other = next((name for name in _REDUCING if name in self._found.places), None)
@@ -198,13 +208,11 @@ class _Reader:
         else:
             raise _Unexpected(kind, "a factor is 'scene' or 'bhv': variables of scenarios vary in the model")
 
-    def _add(self, place: _Token, factor: Factor) -> None:
+    def _add(self, place: Token, factor: Factor) -> None:
         names = [level.text for level in factor.levels]
         twice = next((level for number, level in enumerate(factor.levels) if level.text in names[:number]), None)
         if twice is not None:
-            raise _Unexpected(
-                _Token("", "", twice.span), f"the level '{twice.text}' is given twice: remove one of them"
-            )
+            raise _Unexpected(Token("", "", twice.span), f"the level '{twice.text}' is given twice: remove one of them")
         own = factor.implementation and factor.implementation.text
         if any((one.implementation and one.implementation.text) == own for one in self._found.factors):
             raise _Unexpected(place, "this factor is given twice: write all of its levels into one list")
@@ -265,7 +273,7 @@ class _Reader:
             raise _Unexpected(token, f"expected {what}")
         return Word(name, token.span)
 
-    def _kind(self, kind: str, what: str) -> _Token:
+    def _kind(self, kind: str, what: str) -> Token:
         if self._peek().kind != kind:
             raise _Unexpected(self._peek(), f"expected {what}, not {_shown(self._peek())}")
         return self._take()
@@ -277,10 +285,10 @@ class _Reader:
             raise _Unexpected(token, f"expected {expected}, not {_shown(token)}")
         self._take()
 
-    def _peek(self) -> _Token:
+    def _peek(self) -> Token:
         return self._tokens[self._next]
 
-    def _take(self) -> _Token:
+    def _take(self) -> Token:
         token = self._peek()
         if token.kind != "end":
             self._next += 1
@@ -303,18 +311,19 @@ class _Reader:
         self.faults.append(Diagnostic(self._uri, error.token.span, Severity.ERROR, "syntax", str(error)))
 
 
-def _tokens(text: str) -> Iterator[_Token]:
+def study_tokens(text: str) -> Iterator[Token]:
+    """Yield the tokens of a study."""
     for match in _TOKEN.finditer(text):
         if match.lastgroup != "space":
-            yield _Token(match.lastgroup or "other", match.group(), Span(*match.span()))
-    yield _Token("end", "", Span(len(text), len(text)))
+            yield Token(match.lastgroup or "other", match.group(), Span(*match.span()))
+    yield Token("end", "", Span(len(text), len(text)))
 
 
-def _word(token: _Token) -> Word:
+def _word(token: Token) -> Word:
     return Word(token.text, token.span)
 
 
-def _shown(token: _Token) -> str:
+def _shown(token: Token) -> str:
     return "the end of the file" if token.kind == "end" else f"'{token.text}'"
 
 

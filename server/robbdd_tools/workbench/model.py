@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -279,10 +279,10 @@ def load_all(paths: Sequence[Path]) -> Model:
     return replace(_model(paths[0], project, [file for file in files if file not in others]), paths=paths)
 
 
-def read_instances(paths: Iterable[Path]) -> tuple[SceneInstance, ...]:
+def read_instances(paths: Iterable[Path], load_one: Callable[[Path], Model] | None = None) -> tuple[SceneInstance, ...]:
     """Return the scene instances that ``.scenex`` files declare, without those that they import.
 
-    Raises ``NotAModel``, ``ModelErrors`` and ``SceneChoiceError``.
+    ``load_one`` loads a file, by default from the disk. Raises ``NotAModel``, ``ModelErrors`` and ``SceneChoiceError``.
     """
     from robbdd_tools.graph.places import placed_instances
 
@@ -290,7 +290,7 @@ def read_instances(paths: Iterable[Path]) -> tuple[SceneInstance, ...]:
     for path in dict.fromkeys(paths):
         if path.suffix != ".scenex":
             raise NotAModel(f"{path} is not a .scenex file")
-        (file,) = load(path).files
+        (file,) = (load_one or load)(path).files
         every = placed_instances(file.graph, file.snapshot)
         own = str(uri_to_path(file.uri))
         declared = [one for one in every if one.origin is not None and one.origin.file == own]

@@ -1,0 +1,108 @@
+"""Names in a study: the scenarios and implementations of behaviours that its models declare."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.features.executions import executions_of
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.variant_places import variants_of
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.study_text import STUDY, read_study
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Document
+    from robbdd_tools.names.definition import Definition
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.study_text import Word
+
+_LOCAL = re.compile(r"[^:/#<>]*$")
+"""The local name at the end of a CURIE or an IRI."""
+
+
+def is_study(uri: str) -> bool:
+    """Return whether a file is a study."""
+    return language_of(uri) == STUDY
+
+
+def scenarios_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
+    """Return the variants and executions that a study may name, by local name.
+
+    As in a run: of a model with executions, only variants that are executed can be named.
+    """
+    found: dict[str, Definition] = {}
+    for model in _models(snapshot, uri):
+        files = [file.document.uri for file in snapshot.closure(model)]
+        executions = [one for file in files for one in executions_of(snapshot, file)]
+        executed = {one.variant.iri for one in executions}
+        variants = [one for file in files for one in variants_of(snapshot, file)]
+        for definition in (
+            *(one.definition for one in executions),
+            *(one.definition for one in variants if not executions or one.iri in executed),
+        ):
+            found.setdefault(definition.symbol.name, definition)
+    return found
+
+
+def implementations_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
+    """Return the implementations of behaviours for which a study may name others, by local name."""
+    found: dict[str, Definition] = {}
+    for model in _models(snapshot, uri):
+        for file in snapshot.closure(model):
+            for definition in file.definitions.values():
+                if definition.kind is SymbolKind.IMPLEMENTATION:
+                    found.setdefault(definition.symbol.name, definition)
+    return found
+
+
+def study_name_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definition] | None:
+    """Return the local name of a scenario or an implementation at an offset of a study, and its definition."""
+    found = ((span, target) for span, target in _names(snapshot, uri) if span.contains(offset))
+    return next(found, None)
+
+
+def uses_in_study(snapshot: Snapshot, uri: str, definition: Definition) -> Iterator[Span]:
+    """Yield the places where a study names a scenario or an implementation."""
+    for span, target in _names(snapshot, uri):
+        if (target.uri, target.symbol.path) == (definition.uri, definition.symbol.path):
+            yield span
+
+
+def _names(snapshot: Snapshot, uri: str) -> Iterator[tuple[Span, Definition]]:
+    document = snapshot.document(uri)
+    content = read_study(document)[0]
+    implementations = [one.implementation for one in content.factors if one.implementation is not None]
+    for words, known_in in (
+        (content.scenarios, scenarios_of_study),
+        (implementations, implementations_of_study),
+    ):
+        if words:
+            known = known_in(snapshot, uri)
+            for word in words:
+                yield from _target(document, word, known)
+
+
+def _target(document: Document, word: Word, known: Mapping[str, Definition]) -> Iterator[tuple[Span, Definition]]:
+    """Yield the place of the local name in a reference, with its definition, if that is known."""
+    local = _LOCAL.search(word.text)
+    target = known.get(local[0]) if local is not None else None
+    if local is None or target is None or (":" in word.text and not _is_of(word.text, target)):
+        return
+    end = document.text.index(word.text, word.span.start) + len(word.text)
+    yield Span(end - len(local[0]), end), target
+
+
+def _is_of(written: str, target: Definition) -> bool:
+    """Return whether a CURIE or an IRI may be that of a definition. The prefixes of the graph are not known here."""
+    return target.iri == written or "/" not in written
+
+
+def _models(snapshot: Snapshot, uri: str) -> Iterator[str]:
+    """Yield the models that a study imports and that can be read."""
+    file = snapshot.file(uri)
+    for link in file.imports if file is not None else ():
+        if link.problem is None and language_of(link.uri) in ("bdd", "bddx") and snapshot.file(link.uri) is not None:
+            yield link.uri
