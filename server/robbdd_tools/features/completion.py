@@ -18,6 +18,8 @@ from robbdd_tools.features.part_snippets import PART_SNIPPETS
 from robbdd_tools.features.python_code import code_choices
 from robbdd_tools.features.quoted_completion import quoted
 from robbdd_tools.features.snippets import declaration_snippets
+from robbdd_tools.features.studies import is_study
+from robbdd_tools.features.study_completion import complete_study
 from robbdd_tools.names.index import language_of
 
 if TYPE_CHECKING:
@@ -39,6 +41,8 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
+    if is_study(uri):
+        return complete_study(snapshot, uri, offset)
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None:
         return list(_in_quotes(uri, analysis, offset))

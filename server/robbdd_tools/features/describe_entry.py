@@ -16,8 +16,10 @@ from robbdd_tools.features.model_parts_help import describe_file
 from robbdd_tools.features.part_snippets import PART_SNIPPETS
 from robbdd_tools.features.python_code import CODE_KINDS, describe_code
 from robbdd_tools.features.snippets import declaration_snippets, keyword_form
+from robbdd_tools.features.study_words import study_word_meaning
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project
+from robbdd_tools.syntax.study_text import STUDY
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -55,12 +57,16 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
 
 
 def _keyword(language: str, words: str) -> str | None:
+    if language == STUDY:
+        return study_word_meaning(words)
     form = keyword_form(language, words)
     parts = (describe_words(words), None if form is None else code_block(form, language))
     return "\n\n".join(part for part in parts if part is not None) or None
 
 
 def _snippet(language: str, label: str) -> str | None:
+    if language == STUDY:
+        return study_word_meaning("Study")
     declarations = (one.plain for one in declaration_snippets(language) if f"{one.label} …" == label)
     parts = (one.plain for one in PART_SNIPPETS.get(language, ()) if one.label == label)
     return next((code_block(body, language) for body in (*declarations, *parts)), None)

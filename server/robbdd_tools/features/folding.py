@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.features.studies import is_study
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
@@ -48,6 +49,10 @@ def folds(snapshot: Snapshot, uri: str) -> list[Fold]:
 
 def _brackets(file: FileAnalysis) -> Iterator[Fold]:
     opened: list[int] = []
+    if is_study(file.document.uri):
+        yield from (
+            Fold(first, last - 1, "region") for first, last in _pairs(file.document.text).pairs if last - 1 > first
+        )
     for placed in file.parts():
         start = file.document.position(placed.offset).line
         inside = _brackets_in(placed.declaration)
@@ -71,7 +76,11 @@ class _Brackets:
 
 @kept_with_key
 def _brackets_in(declaration: Declaration) -> _Brackets:
-    document = Document("", 0, declaration.text)
+    return _pairs(declaration.text)
+
+
+def _pairs(text: str) -> _Brackets:
+    document = Document("", 0, text)
     pairs: list[tuple[int, int]] = []
     closed: list[int] = []
     opened: list[int] = []

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import describe, describe_import, result_words
 from robbdd_tools.features.goto_definition import symbol_at
@@ -13,8 +15,11 @@ from robbdd_tools.features.outside_names import outside_name_at
 from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
+from robbdd_tools.features.studies import is_study
+from robbdd_tools.features.study_words import study_word_meaning
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.study_text import study_tokens
 from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:
@@ -62,6 +67,8 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
 
 
 def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+    if is_study(uri):
+        return _study_word(snapshot, uri, offset)
     analysis = snapshot.file(uri)
     for placed in analysis.declarations if analysis is not None else ():
         root = placed.declaration.tree
@@ -75,6 +82,17 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
                 return Hover(time_meaning(node), span)
             if isinstance(node, tree.Emission):
                 return Hover(emission_meaning(node), span)
+    return None
+
+
+def _study_word(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+    """Describe the beginning of a setting, or a catalog behaviour that is a level."""
+    tokens = list(study_tokens(snapshot.document(uri).text))
+    for token, following in pairwise(tokens):
+        if token.kind == "name" and token.span.contains(offset):
+            is_level = following.text in (",", "}")
+            found = describe_catalog_entry(token.text) if is_level else study_word_meaning(token.text)
+            return None if found is None else Hover(found, token.span)
     return None
 
 

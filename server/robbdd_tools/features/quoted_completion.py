@@ -50,11 +50,16 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
     if match is None:
         match, wanted = _MODEL.search(line), frozenset[str]().union(*MODEL_ENDINGS.values())
     if match is not None:
-        folder, _, last = match[1].rpartition("/")
-        for name, kind in _entries(uri, folder and f"{folder}/", wanted):
-            # On the disk, a name may be bytes that are no UTF-8; what is typed may be half a character.
-            above = f"{quote(folder, errors='surrogatepass')}/" if folder else ""
-            yield name, kind, last, urljoin(uri, above + quote(name, errors="surrogateescape"))
+        yield from files_in_quotes(uri, match[1], wanted)
+
+
+def files_in_quotes(uri: str, typed: str, endings: Collection[str]) -> Iterator[tuple[str, str, str, str]]:
+    """Yield the folders, and the files with the given extensions, that may continue a path, as ``quoted`` does."""
+    folder, _, last = typed.rpartition("/")
+    for name, kind in _entries(uri, folder and f"{folder}/", endings):
+        # On the disk, a name may be bytes that are no UTF-8; what is typed may be half a character.
+        above = f"{quote(folder, errors='surrogatepass')}/" if folder else ""
+        yield name, kind, last, urljoin(uri, above + quote(name, errors="surrogateescape"))
 
 
 def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:

@@ -115,7 +115,8 @@ _NUMBERS: Mapping[str, _NumberRange] = {
     "batch": _NumberRange(1, MOST_BATCH),
     "timeout": _NumberRange(0, MOST_SECONDS, is_whole=False, unit="seconds"),
 }
-_REDUCING = ("first", "sample", "pairwise")
+REDUCING = ("first", "sample", "pairwise")
+"""Settings of which a study has at most one."""
 SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "factor")
 """The words that begin a setting."""
 
@@ -182,8 +183,8 @@ class _Reader:
     def _refuse_twice(self, word: Token) -> None:
         if word.text in self._found.places:
             raise _Unexpected(word, f"'{word.text}' is given twice: remove one of them")
-        other = next((name for name in _REDUCING if name in self._found.places), None)
-        if word.text in _REDUCING and other is not None:
+        other = next((name for name in REDUCING if name in self._found.places), None)
+        if word.text in REDUCING and other is not None:
             raise _Unexpected(word, f"give only one of '{other}' and '{word.text}'")
 
     def _scenarios(self) -> None:

@@ -1,0 +1,50 @@
+"""The settings of a study in words, and the form of a whole study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "scenarios": ("scenarios: { <NAME>, … }", "Executes only these variants or executions. Without it: all."),
+        "where": ('where: "CONDITION"', 'Executes only scenarios with these values, such as `"robot=panda"`.'),
+        "first": ("first: N", "Executes only the first N scenarios."),
+        "sample": ("sample: N", "Executes N scenarios, drawn at random with the seed."),
+        "pairwise": (
+            "pairwise: 2",
+            "Executes a covering array: all combinations of values of any 2 (or 3) variables occur.",
+        ),
+        "repeat": (
+            "repeat: N",
+            "Executes each scenario N times, each time with another seed. "
+            "Without it: the number of the model's executions, or once.",
+        ),
+        "seed": ("seed: N", "The seed of the sample and of all executions. Without it: 1."),
+        "batch": ("batch: N", "Moves results to the study's store after N executions. Without it: 500."),
+        "timeout": ("timeout: N seconds", "The limit of wall time for one scenario. Without it: 300; 0 is no limit."),
+        "stop": (
+            "stop: width W\nstop: rate P against Q",
+            "Ends the study early: when the 95 % interval of the pass rate is at most W wide, or when a pass rate of P "
+            "is shown, or refuted in favour of Q. Rates and widths are between 0 and 1.",
+        ),
+        "factor": (
+            'factor scene: { "A.scenex", … }\nfactor bhv <IMPL>: { NAME, … }',
+            "Executes everything in the scene instances of each file, or with each catalog behaviour instead of an "
+            "implementation. All levels of all factors are combined, with the same seeds.",
+        ),
+        "import": ('import "FILE"', "A model to execute: a `.bdd` or a `.bddx`."),
+        "Study": ("Study NAME { … }", "Executes scenarios many times, in several configurations."),
+    }
+)
+"""The forms and the meaning of each word that begins a part of a study."""
+WHOLE = 'import "$1"\n\nStudy ${2:name} {\n    repeat: ${3:10}\n    seed: ${4:1}\n}\n'
+"""The form of a whole study, with the placeholders of a snippet."""
+
+
+def study_word_meaning(word: str) -> str | None:
+    """Describe a word that begins a part of a study; ``None`` for other words."""
+    if word not in FORMS:
+        return None
+    form, meaning = FORMS[word]
+    return f"```study\n{form}\n```\n\n{meaning}"
