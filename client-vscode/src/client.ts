@@ -15,7 +15,7 @@ import { commandBeside } from "./terminal";
 import { isMomentary, problemOf } from "./testing/answers";
 import { RUNNING, type Named, hasUri, isNamed } from "./runTargets";
 
-export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
+export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree", "robbdd-study"];
 const STOP_TIMEOUT = 3000;
 
 export class Server implements vscode.Disposable {

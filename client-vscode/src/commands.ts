@@ -11,7 +11,7 @@ import type { SceneView } from "./panels/scene/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { TYPE } from "./debugging";
-import { RUNNABLE, SCENES, modelFor, openModel } from "./models";
+import { RUNNABLE, SCENES, STUDIES, modelFor, openModel } from "./models";
 import { inform } from "./notices";
 import { newProject } from "./projects";
 import type { RunOptionsChooser } from "./runs/chooser";
@@ -19,7 +19,9 @@ import type { RunMonitor } from "./runs/monitor";
 import { argumentsOf } from "./runs/options";
 import { askUntilFailure, tellFailure } from "./runs/untilFailure";
 import { openServerSetting } from "./settings";
+import { type StudyAction, executeStudy } from "./studies";
 import { isRecord } from "./values";
+import { hasUri } from "./runTargets";
 import type { TestingView } from "./testing/view";
 
 /** Views that show a model next to its text. */
@@ -67,6 +69,9 @@ export function registerCommands(
         },
         SCENES,
       ),
+    "robbdd.runStudy": (target) => withStudy(server, target, "run"),
+    "robbdd.resumeStudy": (target) => withStudy(server, target, "resume"),
+    "robbdd.showStudyResults": (target) => withStudy(server, target, "show"),
     "robbdd.showStudy": (target) => withModel(target, (uri) => studies.choose(uri, "factors")),
     "robbdd.showMatrix": (target) => withModel(target, (uri) => studies.choose(uri, "matrix")),
     "robbdd.showHistory": (target) => histories.open(target),
@@ -104,6 +109,12 @@ async function withModel(target: unknown, task: (uri: string) => unknown, langua
   if (uri !== undefined) {
     await task(uri.toString());
   }
+}
+
+/** `target` is the file of a menu, or the argument of a lens. */
+async function withStudy(server: Server, target: unknown, action: StudyAction): Promise<void> {
+  const named = hasUri(target) ? vscode.Uri.parse(target.uri) : target;
+  await withModel(named, (uri) => executeStudy(server, vscode.Uri.parse(uri), action), STUDIES);
 }
 
 async function runWithOptions(server: Server, chooser: RunOptionsChooser, uri: string): Promise<void> {

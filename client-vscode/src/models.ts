@@ -9,6 +9,8 @@ const MOST = 200;
 
 /** Languages of runnable files: models and executions. */
 export const RUNNABLE = ["robbdd", "robbdd-bddx"];
+/** Languages of studies. */
+export const STUDIES = ["robbdd-study"];
 /** Languages of files with executable scenes. */
 export const SCENES = ["robbdd-scenex"];
 

@@ -1,4 +1,4 @@
-// The TextMate grammars of the five file kinds and of features. The build writes them as JSON.
+// The TextMate grammars of the six file kinds and of features. The build writes them as JSON.
 import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases, property } from "./building.mjs";
 
 const DECLARE = "storage.type.declaration";
@@ -234,6 +234,31 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation"),
 ]);
 
+const study = grammar("RobBDD Study", "source.robbdd.study", [
+  {
+    match: `${NUMBER}\\s*(seconds)(?![\\p{L}\\p{N}_-])`,
+    captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
+  },
+  {
+    // The levels are names of catalog behaviours.
+    begin: String.raw`(?<![\p{L}\p{N}_-])(factor)\s+(bhv)\s*(<[^<>]*>)\s*(:)\s*\{`,
+    beginCaptures: {
+      1: { name: `${WORD}.factor.robbdd` },
+      2: { name: `${WORD}.factor.robbdd` },
+      3: { name: "variable.other.property.robbdd" },
+      4: { name: "punctuation.separator.label.robbdd" },
+    },
+    end: String.raw`\}`,
+    patterns: [COMMON, { match: NAME, name: "entity.name.function.behaviour.robbdd" }],
+  },
+  COMMON,
+  declaration(DECLARE, "entity.name.type.study", "Study"),
+  labels(PROPERTY, "scenarios", "where", "first", "sample", "pairwise", "repeat", "seed", "batch", "timeout", "stop"),
+  phrases(`${WORD}.stop`, "width", "rate", "against"),
+  phrases(`${WORD}.factor`, "factor scene", "factor bhv", "factor", "scene", "bhv"),
+  phrases(DECLARE, "Study"),
+]);
+
 // Features as our templates write them, English or German, for editors that have no extension for Gherkin.
 const STEP_WORDS = "Given|When|Then|And|But|Angenommen|Wenn|Dann|Und|Aber";
 const HEADINGS = "Feature|Background|Scenario Outline|Scenario|Examples|Funktionalität|Grundlage|Szenariogrundriss|Szenario|Beispiele";
@@ -254,4 +279,4 @@ const feature = grammar("Gherkin", "text.gherkin.robbdd", [
   { match: String.raw`(?<![\w-])(?:before|after) event|(?<![\w-])(?:whenever|at some time(?: within)?|within|for(?= [\d.]+(?:e[+-]?\d+)? seconds)|from|until)(?![\w-])`, name: `${WORD}.time.robbdd` },
 ]);
 
-export const grammars = { common, scene, bdd, scenex, bddx, feature };
+export const grammars = { common, scene, bdd, scenex, bddx, study, feature };

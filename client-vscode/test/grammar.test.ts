@@ -16,6 +16,7 @@ const FILES: Record<string, string> = {
   "source.robbdd.scene": "scene",
   "source.robbdd.scenex": "scenex",
   "source.robbdd.bddx": "bddx",
+  "source.robbdd.study": "study",
   "text.gherkin.robbdd": "feature",
 };
 
@@ -264,6 +265,7 @@ const SCOPES: Record<string, string> = {
   scenex: "source.robbdd.scenex",
   ktree: "source.robbdd.scenex",
   bddx: "source.robbdd.bddx",
+  study: "source.robbdd.study",
 };
 
 for (const folder of [join(process.cwd(), "test", "samples"), join(process.cwd(), "..", "examples")]) {

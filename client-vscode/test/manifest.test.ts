@@ -46,7 +46,8 @@ test("every menu leads to a command", () => {
 test("commands on a file or the workspace are offered only where there is one", () => {
   for (const { command, title } of contributes.commands.filter((one) => /File|Gherkin|Graph|Replay|Study/.test(one.title))) {
     const executions = title.includes("This File") ? " || editorLangId == robbdd-bddx" : "";
-    assert.ok([`editorLangId == robbdd${executions}`, "false"].includes(palette.get(command) ?? ""), title);
+    const study = ["Run Study", "Resume Study", "Show Results of Study"].includes(title) ? "-study" : "";
+    assert.ok([`editorLangId == robbdd${study}${executions}`, "false"].includes(palette.get(command) ?? ""), title);
   }
   assert.equal(palette.get("robbdd.importResults"), "workspaceFolderCount > 0");
   assert.equal(palette.get("robbdd.openModel"), "workspaceFolderCount > 0");

@@ -150,6 +150,9 @@ class Editor {
   debugs = true;
   /** The texts of new documents. */
   readonly texts: string[] = [];
+  /** The tasks that were begun, and whether edited files can be saved before. */
+  readonly tasks: Task[] = [];
+  saves = true;
   readonly files = new Map<string, string>();
   /** Addresses at which there is no file. */
   readonly missing = new Set<string>();
@@ -185,6 +188,8 @@ class Editor {
     this.lists.length = 0;
     this.openRuns = 0;
     this.texts.length = 0;
+    this.tasks.length = 0;
+    this.saves = true;
     this.debugged.length = 0;
     this.debugs = true;
     this.session = undefined;
@@ -229,6 +234,7 @@ export const workspace = {
     return Promise.resolve({ languageId: "feature" });
   },
   findFiles: () => Promise.resolve([]),
+  saveAll: () => Promise.resolve(editor.saves),
   onDidChangeConfiguration: quiet(),
   onDidChangeTextDocument: quiet(),
   onDidChangeWorkspaceFolders: quiet(),
@@ -290,6 +296,29 @@ export const window = {
   onDidChangeTextEditorSelection: quiet(),
   onDidChangeVisibleTextEditors: quiet(),
 };
+
+/** A task that a test reads: the program and its arguments, and where it runs. */
+export class ProcessExecution {
+  constructor(
+    readonly process: string,
+    readonly args: readonly string[],
+    readonly options: { readonly cwd: string; readonly env: Readonly<Record<string, string>> },
+  ) {}
+}
+
+export class Task {
+  presentationOptions: unknown;
+
+  constructor(
+    readonly definition: Readonly<Record<string, string>>,
+    readonly scope: number,
+    readonly name: string,
+    readonly source: string,
+    readonly execution: ProcessExecution,
+  ) {}
+}
+
+export const tasks = { executeTask: (task: Task) => Promise.resolve(void editor.tasks.push(task)) };
 
 export const commands = {
   executeCommand: nothing,
@@ -431,4 +460,7 @@ export const ProgressLocation = { Notification: 15 };
 export const StatusBarAlignment = { Left: 1 };
 export const TestRunProfileKind = { Run: 1, Debug: 2 };
 export const TextEditorRevealType = { InCenterIfOutsideViewport: 2 };
+export const TaskPanelKind = { Dedicated: 2 };
+export const TaskRevealKind = { Always: 1 };
+export const TaskScope = { Workspace: 2 };
 export const ViewColumn = { Active: -1, Beside: -2, One: 1, Two: 2, Three: 3 };

@@ -53,8 +53,8 @@ def test_a_study_begins_with_an_import_or_as_a_whole() -> None:
 
 
 def test_the_form_of_a_whole_study_is_one() -> None:
-    text = WHOLE.replace("$1", "main.bdd").replace("${2:name}", "s").replace("${3:10}", "10").replace("${4:1}", "1")
-    assert read_study(Document(URI, 0, text))[1] == []
+    content, faults = read_study(Document(URI, 0, WHOLE.plain))
+    assert (content.name, content.numbers, faults) == ("name", {"repeat": 10, "seed": 1}, [])
 
 
 def test_the_settings_that_are_missing_are_proposed() -> None:

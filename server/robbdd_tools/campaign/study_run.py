@@ -66,6 +66,11 @@ def study_folder(path: Path, store: Path | None = None) -> Path:
     return root / shown_path(path)
 
 
+def has_results(folder: Path) -> bool:
+    """Return whether a study has been begun."""
+    return (folder / NAME).is_file()
+
+
 def remove_results(folder: Path) -> None:
     """Remove the results of a study. Raises ``StudyProblem`` while it is executed, and ``OSError``."""
     if not folder.exists():

@@ -41,9 +41,9 @@ _SCENARIO, _IMPLEMENTATION, _BEHAVIOUR, _MODEL, _SCENE = (
 
 @dataclass(frozen=True, slots=True)
 class _Cursor:
-    """What is typed at a cursor, and the tokens before it.
+    """The word at a cursor, and the tokens before it.
 
-    ``span`` is the typed part of the word, ``whole`` also has the rest of it. ``bracket`` is ``<`` inside of a
+    ``span`` is the typed part of the word, and ``whole`` the word. ``bracket`` is ``<`` inside of a
     reference, or the quote inside of a text.
     """
 
@@ -153,7 +153,7 @@ def _listed(tokens: Sequence[Token]) -> list[str]:
 
 def _words(cursor: _Cursor, words: Sequence[str]) -> Iterator[Completion]:
     if "Study" in words and not cursor.tokens:
-        yield Completion("Study …", "snippet", "whole study", WHOLE, cursor.span, cursor.whole)
+        yield Completion("Study …", "snippet", "whole study", WHOLE.body, cursor.span, cursor.whole)
     for word in words:
         text = _FORMS.get(word, 'import "' if word == "import" else f"{word} ")
         yield Completion(word, "keyword", "", text, cursor.span, cursor.whole)

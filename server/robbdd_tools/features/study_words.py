@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from robbdd_tools.features.snippets import Snippet
+
 FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "scenarios": ("scenarios: { <NAME>, … }", "Executes only these variants or executions. Without it: all."),
@@ -38,8 +40,8 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 """The forms and the meaning of each word that begins a part of a study."""
-WHOLE = 'import "$1"\n\nStudy ${2:name} {\n    repeat: ${3:10}\n    seed: ${4:1}\n}\n'
-"""The form of a whole study, with the placeholders of a snippet."""
+WHOLE = Snippet("Study", 'import "${1:model.bdd}"\n\nStudy ${2:name} {\n    repeat: ${3:10}\n    seed: ${4:1}\n}\n')
+"""The form of a whole study."""
 
 
 def study_word_meaning(word: str) -> str | None:

@@ -12,10 +12,12 @@ from lsprotocol import types
 from robbdd_tools.features.clause_results import PassRate, appearance, execution_rate, pass_rate
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.scenarios import number_of_scenarios
+from robbdd_tools.features.studies import is_study
 from robbdd_tools.lsp.commands import GHERKIN, RECORD, RERUN, RUN
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.result_hover import REPLAY
 from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.lsp.study_lenses import study_lenses
 from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
@@ -55,6 +57,8 @@ def register_lenses(server: RobbddServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
         uri = params.text_document.uri
+        if is_study(uri):
+            return await ls.analyse(lambda snapshot: study_lenses(ls, snapshot, uri))
         recorded = await asyncio.to_thread(ls.stores.replayable, uri) if ls.shows_replays else frozenset[str]()
 
         def find(snapshot: Snapshot) -> list[types.CodeLens]:
