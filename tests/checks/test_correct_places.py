@@ -42,3 +42,15 @@ def test_clauses_that_do_not_ask_need_no_relation() -> None:
 
 def test_an_incomplete_relation_is_not_held_against_the_values() -> None:
     assert missing("obj <parts.bol>") == []
+
+
+@pytest.mark.parametrize(
+    ("stated", "names"), [("bolt", ["parts.nut"]), ("parts", []), ("washers", ["parts.bolt", "parts.nut"])]
+)
+def test_an_imported_graph_may_state_the_relation(stated: str, names: list[str]) -> None:
+    lines = (
+        "@prefix env: <https://example.org/env/> .\n@prefix rbw: <https://robbdd.org/metamodels/workbench#> .\n"
+        f"env:tray_ws rbw:correct-for env:{stated} .\n"
+    )
+    text = f'//- main.bdd\n{ASKED}//- lab.scene\nimport "fits.ttl"\n{SCENE}//- fits.ttl\n{lines}'
+    assert [finding.message.split("'")[1] for finding in found(text, "no-correct-place")] == names

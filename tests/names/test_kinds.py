@@ -177,10 +177,10 @@ def test_iris_of_executable_things_follow_their_namespaces() -> None:
 @pytest.mark.parametrize(
     ("name", "path", "words"),
     [
-        ("a.scene", "main.bdd", "only '.scene' files"),
-        ("a.bdd", "cell.scenex", "only '.bdd' and '.scene' files"),
+        ("a.scene", "main.bdd", "only '.scene', '.ttl', '.json' and '.jsonld' files"),
+        ("a.bdd", "cell.scenex", "only '.bdd', '.scene', '.ttl', '.json' and '.jsonld' files"),
         ("a.ktree", "lab.scene", "only '.ktree' files"),
-        ("a.scenex", "main.bdd", "only '.ktree', '.scene' and '.scenex' files"),
+        ("a.scenex", "main.bdd", "only '.ktree', '.scene', '.scenex', '.ttl', '.json' and '.jsonld' files"),
         ("a.bddx", "lab.scene", "only '.bdd' and '.scenex' files"),
     ],
 )

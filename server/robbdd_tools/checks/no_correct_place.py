@@ -9,13 +9,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.names.elements import Site, element_of, elements_of, story_sites
+from robbdd_tools.graph.write.imported_graphs import CORRECT_FOR, imported_graph
+from robbdd_tools.names.elements import Site, element_of, elements_of, site_of, story_sites
 from robbdd_tools.names.types import uses_by_variable, variable_key, written_elements
 from robbdd_tools.names.uses import phrase_words
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -103,7 +106,20 @@ def _placed(snapshot: Snapshot, file: FileAnalysis) -> frozenset[Key] | None:
                 if members is None:
                     return None
                 found.update(member.key for member in members)
-    return frozenset(found)
+    return frozenset(found.union(_placed_by_graphs(snapshot, file)))
+
+
+def _placed_by_graphs(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Key]:
+    """Yield the objects for which imported graphs state a correct workspace."""
+    closure = snapshot.closure(file.document.uri)
+    if not any(graph_format(link.uri) for one in closure for link in one.imports):
+        return
+    stated = imported_graph(snapshot, file.document.uri).values(CORRECT_FOR)
+    for definition in (definition for one in closure for definition in one.definitions.values()):
+        if definition.iri in stated:
+            is_set = definition.kind is SymbolKind.OBJECT_SET
+            members = elements_of(site_of(snapshot, definition)) or () if is_set else ()
+            yield from ((definition.uri, definition.symbol.path), *(member.key for member in members))
 
 
 @kept_with_key

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.checks.lines import import_removal
 from robbdd_tools.checks.usage import has_story, used_names
 
@@ -30,9 +31,12 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
 
 
 def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: frozenset[str]) -> bool:
-    """Return whether a file uses no name of an import. This is uncertain if the imported file has an error."""
+    """Return whether a file uses no name of an import. This is uncertain if the imported file has an error.
+
+    A graph is imported for its statements, not for names.
+    """
     scope = snapshot.scope(link.uri)
-    if scope.unread:
+    if scope.unread or graph_format(link.uri):
         return False
     for index in scope.walk():
         if index.document.uri == file.document.uri:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri, read_text
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.commands.output import fail, print_note
-from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.project import Project
 from robbdd_tools.workbench.diagnostics import Finding, findings
 from robbdd_tools.workbench.model import ModelFile, load

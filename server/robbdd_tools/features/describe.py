@@ -14,6 +14,7 @@ from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, execution_rate, pass_rate, substitutions
 from robbdd_tools.features.executions import executions_of
+from robbdd_tools.features.imported_statements import describe_graph, describe_statements
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.references import uses
@@ -86,6 +87,7 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
     parts = [_title(snapshot, definition), *_comment(site, definition)]
     if site is not None:
         parts += _contents(site, definition)
+    parts += describe_statements(snapshot, definition)
     parts += _results(snapshot, definition, findings)
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
         parts.append(code(f"<{definition.iri}>"))
@@ -102,6 +104,9 @@ def describe_path(snapshot: Snapshot, uri: str, path: str) -> str | None:
 
 def describe_import(snapshot: Snapshot, uri: str) -> str:
     """Describe an imported file by its declarations."""
+    graph = describe_graph(snapshot, uri)
+    if graph is not None:
+        return graph
     file = snapshot.file(uri)
     first = (
         [placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols] if file else []

@@ -54,10 +54,10 @@ def shape_diagnostics(
     ``validation`` that knows an earlier revision checks only the changes since, and raises ``Superseded`` when it is
     outdated. All declarations of the imported files ``together`` are validated as well.
     """
+    from robbdd_tools.base.graph_formats import graph_format
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
     from robbdd_tools.graph.shapes.validate import validate
     from robbdd_tools.graph.write.build import build_graph
-    from robbdd_tools.graph.write.foreign_imports import graph_format
 
     if snapshot.file(uri) is None:
         return []

@@ -13,8 +13,8 @@ from robbdd_tools.base.stored_names import without_case
 from robbdd_tools.checks.finding import MAX_OFFERED
 from robbdd_tools.checks.lines import import_removal
 from robbdd_tools.features.quoted_completion import MODEL_ENDINGS
-from robbdd_tools.features.workspace_files import files_near, model_files_near
-from robbdd_tools.names.imports import IMPORTABLE, import_path, reached
+from robbdd_tools.features.workspace_files import files_near
+from robbdd_tools.names.imports import import_path, not_importable, reached
 from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
@@ -43,11 +43,15 @@ def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
     if link is None:
         return
     uri, span = file.document.uri, diagnostic.span
-    kinds = IMPORTABLE.get(language_of(uri), ())
-    if link.uri == uri or (language_of(link.uri) not in kinds and uri_to_path(link.uri) is not None):
+    language = language_of(uri)
+
+    def is_importable(other: str) -> bool:
+        return not_importable(language, language_of(other), other) is None
+
+    if link.uri == uri or (not is_importable(link.uri) and uri_to_path(link.uri) is not None):
         yield from import_removal(file, link, "Remove this import")
         return
-    near = (found for found in model_files_near(uri) if found != uri and language_of(found) in kinds)
+    near = (found for found in files_near(uri, is_importable) if found != uri)
     written = file.document.text[span.start : span.end]
     for path in _alike(written, uri, near):
         yield Fix(f"Change to '{path}'", (Edit(uri, span, path),))

@@ -10,7 +10,7 @@ from urllib.parse import quote, urljoin
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.model_paths import package_share, packages
 from robbdd_tools.checks.catalog_entry import known_entries
-from robbdd_tools.names.imports import IMPORTABLE
+from robbdd_tools.names.imports import importable_extensions
 from robbdd_tools.names.index import language_of
 
 _IMPORT = re.compile(r"import\s*[\"']([^\"']*)\Z")
@@ -45,7 +45,7 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
                 name, kind = (f"{entry.name}/", "folder") if entry.is_dir() else (entry.name, "file")
                 yield name, kind, last, path_to_uri(entry)
         return
-    wanted = frozenset(f".{kind}" for kind in IMPORTABLE.get(language_of(uri), ()))
+    wanted = frozenset(f".{kind}" for kind in importable_extensions(language_of(uri)))
     match = _IMPORT.search(line)
     if match is None:
         match, wanted = _MODEL.search(line), frozenset[str]().union(*MODEL_ENDINGS.values())

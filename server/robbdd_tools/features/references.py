@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.goto_definition import symbol_at
+from robbdd_tools.features.imported_statements import places_in_graphs
 from robbdd_tools.features.studies import is_study, uses_in_study
 from robbdd_tools.features.used_names import name_of, places_of
 from robbdd_tools.names.types import columns_of
@@ -36,12 +37,16 @@ class Highlight:
 
 
 def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[Place]:
-    """Return the uses of the name at an offset, sorted by file and place."""
+    """Return the uses of the name at an offset, sorted by file and place.
+
+    The places where imported graphs describe it are included.
+    """
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return []
     definition = found[1]
     places = set(uses(snapshot, definition))
+    places.update((place.uri, place.span) for place in places_in_graphs(snapshot, definition))
     if with_declaration:
         places.add((definition.uri, definition.span))
     return sorted(places)

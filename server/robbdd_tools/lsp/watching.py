@@ -18,7 +18,9 @@ from robbdd_tools.syntax.parse import LANGUAGES
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
-WATCHED = f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', 'robbdd.toml', 'pyproject.toml'))}}}"
+WATCHED = (
+    f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', '*.jsonld', 'robbdd.toml', 'pyproject.toml'))}}}"
+)
 """Models, and files that may hold a project's own rules about them."""
 PYTHON = "**/*.py"
 """Code that models may name: its errors from a run are outdated when it changes."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import quote, unquote, urljoin, urlsplit
 
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.graph_formats import GRAPH_FORMATS, graph_format
 from robbdd_tools.base.uris import drive_uri
 
 IMPORTABLE: Mapping[str, tuple[str, ...]] = {
@@ -21,7 +22,9 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
     "bddx": ("bdd", "scenex"),
     "study": ("bdd", "bddx", "scenex"),
 }
-"""The kinds of file that each kind may import."""
+"""The kinds of model file that each kind may import."""
+_ENRICHED = frozenset({"scene", "bdd", "scenex"})
+"""The kinds of file that may import graphs, which add properties to what is declared elsewhere."""
 BACKSLASH = "\\"
 _PACKAGE = "package:"
 _ADDRESS = "address:"
@@ -80,15 +83,19 @@ def not_a_path(uri: str) -> str | None:
     return f"'{written}' is an address: import a file of this machine by its path"
 
 
-def not_importable(importer: str, imported: str) -> str | None:
-    """Return an error message if the kind of a file must not import ``imported``; ``None`` if it may.
+def importable_extensions(language: str) -> tuple[str, ...]:
+    """Return the extensions, without the dot, of the files that a file of a language may import."""
+    return (*IMPORTABLE.get(language, ()), *(GRAPH_FORMATS if language in _ENRICHED else ()))
 
-    ``importer`` and ``imported`` are languages; ``imported`` is ``""`` if the file is not a model file.
+
+def not_importable(importer: str, imported: str, uri: str) -> str | None:
+    """Return an error message if the kind of a file must not import another file; ``None`` if it may.
+
+    ``importer`` and ``imported`` are languages; ``imported`` is ``""`` if the file, ``uri``, is not a model file.
     """
-    kinds = IMPORTABLE.get(importer, ())
-    if imported in kinds:
+    if imported in IMPORTABLE.get(importer, ()) or (importer in _ENRICHED and graph_format(uri)):
         return None
-    *others, last = (f"'.{kind}'" for kind in kinds)
+    *others, last = (f"'.{extension}'" for extension in importable_extensions(importer))
     listed = f"{', '.join(others)} and {last}" if others else last
     return f"only {listed} files can be imported here"
 

@@ -267,7 +267,9 @@ class Snapshot:
         if uri == index.document.uri:
             return "the file imports itself: remove this import"
         problem = (
-            not_a_path(uri) or not_importable(language_of(index.document.uri), language_of(uri)) or missing_package(uri)
+            not_a_path(uri)
+            or not_importable(language_of(index.document.uri), language_of(uri), uri)
+            or missing_package(uri)
         )
         if problem is not None:
             return problem

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -43,13 +44,18 @@ def _known_answers(_: tuple[NameTable, ...]) -> dict[tuple[tuple[SymbolKind, ...
 def _closest(
     tables: tuple[NameTable, ...], kinds: tuple[SymbolKind, ...], scopes: tuple[str, ...], path: str
 ) -> _Answer:
-    from rapidfuzz import process
-    from rapidfuzz.fuzz import ratio
-
     names: dict[str, None] = {}
     for position, table in enumerate(tables):
         for known, found in table.kinds.items():
             if not set(found).isdisjoint(kinds):
                 names.setdefault(shortened(known, scopes) if position == 0 else known)
-    near = process.extract(path, sorted(names), scorer=ratio, limit=MAX_OFFERED, score_cutoff=MIN_ALIKE)
-    return tuple(name for name, _, _ in near), bool(names)
+    return similar(path, sorted(names)), bool(names)
+
+
+def similar(written: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names most similar to a written one, the most similar first."""
+    from rapidfuzz import process
+    from rapidfuzz.fuzz import ratio
+
+    near = process.extract(written, names, scorer=ratio, limit=MAX_OFFERED, score_cutoff=MIN_ALIKE)
+    return tuple(name for name, _, _ in near)

@@ -13,10 +13,10 @@ import pytest
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_text
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.printable import printable
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.gherkin.select import SelectionError
-from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.pytest_plugin.plugin_options import OPTIONS, read_options
 from robbdd_tools.pytest_plugin.scenario_nodes import (

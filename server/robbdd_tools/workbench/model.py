@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.features.diagnostics import all_diagnostics, text_diagnostics
-from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.workbench.diagnostics import Finding, Place, Places, findings
 from robbdd_tools.workbench.named_files import NotAModel, named_files, refuse_other_files

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.graph.write.foreign_imports import GRAPH_FORMATS, graph_format
+from robbdd_tools.base.graph_formats import GRAPH_FORMATS, graph_format
 from robbdd_tools.syntax.parse import LANGUAGES
 
 

@@ -23,6 +23,7 @@ from robbdd_tools.graph.shapes.neighbourhood import Fingerprint, Identity, Neigh
 from robbdd_tools.graph.shapes.project_shapes import ProjectShapes, ShapeFile
 from robbdd_tools.graph.shapes.validate import NO_SHAPES, project_findings, together
 from robbdd_tools.graph.write.build import build_declarations, build_graph
+from robbdd_tools.graph.write.imported_graphs import NOTHING, ImportedGraph, imported_graph
 from robbdd_tools.names.anchors import Anchored, Anchors
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ class Validation:
         self.looked_at = 0
         self._kept: dict[Identity, _Kept] = {}
         self._files: tuple[ShapeFile, ...] = ()
+        self._imported = NOTHING
         self._unusable: set[str] = set()
 
     def run(
@@ -69,6 +71,7 @@ class Validation:
         Raises ``Superseded`` if a newer revision is waiting.
         """
         self.looked_at = 0
+        self._import(imported_graph(snapshot, uri))
         local = self._local_files(project)
         around = Neighbourhoods(snapshot, uri)
         self._forget(around)
@@ -79,18 +82,27 @@ class Validation:
             self._look_at(snapshot, uri, around, waiting[start : start + AT_ONCE], local)
         found = list(self._findings(snapshot, around))
         rest = tuple(file for file in project.files if file not in local or file.uri in self._unusable)
-        if rest or project.faults:
+        if rest or project.faults or self._imported.documents:
             built = build_graph(snapshot, uri)
+            found += built.faults
             writer = FindingWriter(built, derive(built.graph))
             found += project_findings(writer, ProjectShapes(rest, project.faults))
         return merged([*found, *project.remarks])
 
+    def _import(self, imported: ImportedGraph) -> None:
+        """Use the statements of imported graphs. If they have changed, all cached findings are dropped."""
+        if imported.documents != self._imported.documents:
+            self._kept.clear()
+        self._imported = imported
+
     def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
         """Return the shape files of the project that do not need the whole graph.
 
+        No declaration is responsible for a node that only an imported graph describes: its shapes need the whole graph.
         If these files have changed, all cached findings are dropped.
         """
-        files = tuple(file for file in project.files if not file.faults and is_local(file.graph))
+        usable = () if self._imported.documents else project.files
+        files = tuple(file for file in usable if not file.faults and is_local(file.graph))
         if files != self._files:
             self._files = files
             self._kept.clear()
@@ -121,7 +133,7 @@ class Validation:
         local: tuple[ShapeFile, ...],
     ) -> None:
         part = around.complete(entries)
-        built = build_declarations(uri, around.uses, part, around.known)
+        built = build_declarations(uri, around.uses, part, around.known, self._imported)
         writer = FindingWriter(built, derive(built.graph))
         found: dict[Key, list[Diagnostic]] = {entry.key: [] for entry in entries}
 

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, prefix_for
+from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 from robbdd_tools.graph.write.behaviour_trees import add_behaviour_tree
 from robbdd_tools.graph.write.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.write.built import Clash
@@ -19,8 +22,9 @@ from robbdd_tools.graph.write.clauses import ClauseWriter, add_time
 from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reachable_declarations, unreliable_declarations
 from robbdd_tools.graph.write.executions import add_execution
 from robbdd_tools.graph.write.foreign import read_graph_file
-from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.graph.write.identities import SHARED, Identities, identities
+from robbdd_tools.graph.write.imported_faults import imported_faults
+from robbdd_tools.graph.write.imported_graphs import NOTHING, ImportedGraph, imported_graph
 from robbdd_tools.graph.write.instances import add_instances
 from robbdd_tools.graph.write.scenes import (
     Memberships,
@@ -60,11 +64,15 @@ def build_graph(snapshot: Snapshot, uri: str, together: Collection[str] = ()) ->
         return read_graph_file(file.document, [snapshot.document(other) for other in snapshot.joined.get(uri, ())])
     uses = Uses(snapshot.closure(uri), together)
     reached = reachable_declarations(uses)
-    return build_declarations(uri, uses, reached, identities(snapshot, reached))
+    imported = imported_graph(snapshot, uri)
+    built = build_declarations(uri, uses, reached, identities(snapshot, reached), imported)
+    return replace(built, faults=tuple(imported_faults(snapshot, uri, imported, built.graph)))
 
 
-def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: Identities) -> BuiltGraph:
-    """Return the graph of some declarations of a file.
+def build_declarations(
+    uri: str, uses: Uses, reached: Sequence[Reached], known: Identities, imported: ImportedGraph = NOTHING
+) -> BuiltGraph:
+    """Return the graph of some declarations of a file, with the statements of the graphs that it imports.
 
     ``reached`` are all reachable declarations, or a complete part of them. A part is complete if it contains everything
     that its declarations use and all declarations that name the same nodes. ``known`` are the nodes that all
@@ -74,14 +82,19 @@ def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: 
     for node, declarers in known.shared.items():
         sink.sources.mark([(node,)], declarers[0].location)
     _add_foundations(sink, reached)
-    bind_prefixes(sink.graph, _add_prefixes(sink, reached))
+    prefixes = _add_prefixes(sink, reached)
+    names = known.names
+    if imported.documents:
+        _add_imported(sink, imported, prefixes)
+        names = {**imported.names, **names}
+    bind_prefixes(sink.graph, prefixes)
     clashes = tuple(Clash(str(node), location, first) for node, location, first in sink.clashes)
     uncertain = unreliable_declarations(uses, reached, [clash.location for clash in clashes])
     return BuiltGraph(
         uri,
         sink.graph,
         sink.sources.build(),
-        known.names,
+        names,
         clashes,
         tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
         frozenset(_nodes_of(uncertain)),
@@ -242,6 +255,21 @@ def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
         prefixes[prefix] = str(namespace)
         sink.add(namespace, "rbw:prefix", sink.literal(prefix))
     return prefixes
+
+
+def _add_imported(sink: Sink, imported: ImportedGraph, prefixes: dict[str, str]) -> None:
+    """Add the statements of imported graphs. Their prefixes come after those of the models."""
+    declared = frozenset(str(node) for node in sink.graph.subjects())
+    for triple in imported.triples:
+        sink.graph.add(triple)
+    for key, place in imported.places.items():
+        if len(key) > 1 or declared.isdisjoint(key):
+            sink.sources.mark([key], place)
+    for name, prefix in imported.prefixes.items():
+        namespace = sink.iri(name)
+        if namespace is not None and name not in prefixes.values() and name not in PREFIXES.values():
+            prefixes[prefix_for(prefix, prefixes)] = name
+            sink.add(namespace, "rbw:prefix", sink.literal(next(reversed(prefixes))))
 
 
 def _namespaces(reached: Iterable[Reached]) -> Iterator[tree.Namespace]:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.rdf.records import Records
 from robbdd_tools.graph.rdf.serialize import UnreadableGraph
 from robbdd_tools.graph.read.acceptance import incomplete_variants
 from robbdd_tools.graph.write.built import BuiltGraph
-from robbdd_tools.graph.write.foreign_imports import graph_format, merge_imports
+from robbdd_tools.graph.write.foreign_imports import merge_imports
 from robbdd_tools.graph.write.foreign_namespaces import foreign_namespaces
 from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
 from robbdd_tools.graph.write.older_clauses import complete_clauses
@@ -42,7 +43,7 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
     graph = merged.graph
     complete_clauses(graph)
     complete_executions(graph)
-    owners = _blank_owners(graph)
+    owners = blank_owners(graph)
     places = graph_places(merged.documents, graph, owners)
     names = node_names(graph, owners)
     records = Records(graph)
@@ -67,13 +68,13 @@ def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
             if node.startswith(namespace) and len(node) > len(namespace):
                 names[node] = f"{prefix}:{node[len(namespace) :]}"
                 break
-    for owner, node in _blank_owners(graph) if owners is None else owners:
+    for owner, node in blank_owners(graph) if owners is None else owners:
         if isinstance(node, BNode) and str(owner) in names:
             names.setdefault(str(node), f"a node of {names[str(owner)]}")
     return names
 
 
-def _blank_owners(graph: Graph) -> Owners:
+def blank_owners(graph: Graph) -> Owners:
     """Return each blank node with the named node that leads to it."""
     from rdflib import BNode
 
@@ -107,7 +108,7 @@ def graph_places(documents: Iterable[Document], graph: Graph, owners: Owners | N
         find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
         found = find(document.text, namespaces, document.uri)
         places |= {node: Location(document.uri, span) for node, span in found.items()}
-    for owner, node in _blank_owners(graph) if owners is None else owners:
+    for owner, node in blank_owners(graph) if owners is None else owners:
         if str(owner) in places:
             places[str(node)] = places[str(owner)]
     return SourceMap({(node,): (place,) for node, place in places.items()})

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import Unreadable, path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.graph_formats import GRAPH_FORMATS, graph_format
 from robbdd_tools.graph.rdf.contexts import file_for
 from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
 
@@ -19,14 +19,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
-GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
-"""Extension of a graph file → its format."""
 IMPORTS = "http://www.w3.org/2002/07/owl#imports"
-
-
-def graph_format(uri: str) -> str:
-    """Return the graph format of a file by its extension; ``""`` for any other file."""
-    return GRAPH_FORMATS.get(PurePosixPath(uri).suffix.removeprefix(".").lower(), "")
 
 
 @dataclass(slots=True)
@@ -79,28 +72,29 @@ def merge_imports(document: Document, others: Iterable[Document] = ()) -> Merged
         else:
             waiting += merged.add(other, graph)
     for importer, name in waiting:
-        path = _file(importer.uri, name)
+        path = imported_file(importer.uri, name)
         uri = name if path is None else path_to_uri(path)
         if uri in seen:
             continue
         seen.add(uri)
-        found = _read(path, name)
+        found = read_import(path, name)
         if isinstance(found, str):
-            merged.faults.append(_fault(importer, name, found))
+            merged.faults.append(import_fault(importer, name, found))
             continue
         other, graph = found
         waiting += merged.add(other, graph)
     return merged
 
 
-def _file(importer: str, name: str) -> Path | None:
+def imported_file(importer: str, name: str) -> Path | None:
+    """Return the file that an import names; ``None`` for an address that no file is near for."""
     path, own = uri_to_path(name), uri_to_path(importer)
     if path is not None or own is None:
         return path
     return file_for(name, own.parent)
 
 
-def _read(path: Path | None, name: str) -> tuple[Document, Graph] | str:
+def read_import(path: Path | None, name: str) -> tuple[Document, Graph] | str:
     """Return the document and the graph of an imported file, or the fault of the import."""
     if path is None:
         return f"'{name}' is not fetched: put the file next to this one, under the name that its address ends with"
@@ -116,7 +110,8 @@ def _read(path: Path | None, name: str) -> tuple[Document, Graph] | str:
         return f"'{path.name}' cannot be read: {error}"
 
 
-def _fault(importer: Document, name: str, message: str) -> Diagnostic:
+def import_fault(importer: Document, name: str, message: str) -> Diagnostic:
+    """Return the diagnostic of an import, at its place in the importing document."""
     written = name.rpartition("/")[2]
     start = max(importer.text.find(written), 0)
     span = Span(start, start + len(written) if start else 0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from urllib.parse import urljoin
 
 from robbdd_tools.base.document import Span
@@ -17,6 +18,7 @@ _TURTLE = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 _JSON = re.compile(r'"(?P<text>(?:\\.|[^"\\])*)"(?P<key>\s*:)?|(?P<sign>[{}\[\],])', re.DOTALL)
+_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"
 _ID_KEYS = {"@id", "id"}
 
 
@@ -39,6 +41,83 @@ def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> d
             known.setdefault(node, Span(*match.span()))
         before = match[0]
     return {**others, **subjects}
+
+
+@dataclass(slots=True)
+class _Statements:
+    """The statement that is read at one level of nesting: its subject, its predicate and what follows."""
+
+    subject: str | None = None
+    predicate: str | None = None
+    follows: str = "subject"
+
+
+def turtle_statements(text: str, namespaces: Mapping[str, str], base: str) -> dict[tuple[str, ...], Span]:
+    """Return the position of each property of a named subject, and of each of its values that are IRIs.
+
+    The keys are subject and predicate, and subject, predicate and value. Statements about blank nodes have none.
+    """
+    found: dict[tuple[str, ...], Span] = {}
+    levels = [_Statements()]
+    tokens = (match for match in _TURTLE.finditer(_simplified(text)) if match["skip"] is None)
+    for match in tokens:
+        level, sign = levels[-1], match[0]
+        if sign.lower() in _DIRECTIVES and level.follows == "subject":
+            for _ in range(_DIRECTIVES[sign.lower()]):
+                next(tokens, None)
+        elif sign in "[(":
+            levels.append(_Statements(None, None, "predicate" if sign == "[" else "value"))
+        elif sign in "])" and len(levels) > 1:
+            levels.pop()
+            if levels[-1].follows == "subject":
+                levels[-1] = _Statements(None, None, "predicate")
+        elif sign == ";":
+            level.follows = "predicate"
+        elif sign == "." and len(levels) == 1:
+            levels[0] = _Statements()
+        elif (node := _turtle_node(match, namespaces, base, level)) is not None:
+            _take(level, node, Span(*match.span()), found)
+    return found
+
+
+_DIRECTIVES = {"@prefix": 3, "@base": 2, "prefix": 2, "base": 1}
+"""Directive → the number of tokens that follow it, including the point at its end."""
+_UNLIKE_NAMES = re.compile(
+    r"""("{3}(?:\\.|[^\\])*?"{3}|'{3}(?:\\.|[^\\])*?'{3}|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|<[^<>\s]*>|\#[^\n\r]*)
+    |(?<![\w:\-%.])(?:_:(?P<blank>[\w\-]+)|[-+]?(?:\d+\.\d+|\.\d+|\d+)(?:[eE][-+]?\d+)?)""",
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def _simplified(text: str) -> str:
+    """Return a text of the same length without numbers, whose points end no statement, and with IRIs as blank nodes."""
+
+    def simplify(match: re.Match[str]) -> str:
+        if match[1]:
+            return match[0]
+        return f"<{match['blank']}>" if match["blank"] else " " * len(match[0])
+
+    return _UNLIKE_NAMES.sub(simplify, text)
+
+
+def _turtle_node(match: re.Match[str], namespaces: Mapping[str, str], base: str, level: _Statements) -> str | None:
+    if match["iri"] is not None:
+        return urljoin(base, match["iri"])
+    if match["prefix"] is not None:
+        local = re.sub(r"\\(.)", r"\1", match["local"])
+        return namespaces.get(match["prefix"], f"{match['prefix']}:") + local
+    return _TYPE if match[0] == "a" and level.follows == "predicate" else None
+
+
+def _take(level: _Statements, node: str, span: Span, found: dict[tuple[str, ...], Span]) -> None:
+    if level.follows == "subject":
+        level.subject, level.follows = node, "predicate"
+    elif level.follows == "predicate":
+        level.predicate, level.follows = node, "value"
+        if level.subject is not None:
+            found.setdefault((level.subject, node), span)
+    elif level.subject is not None and level.predicate is not None:
+        found.setdefault((level.subject, level.predicate, node), span)
 
 
 def json_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> dict[str, Span]:
