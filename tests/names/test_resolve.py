@@ -96,7 +96,7 @@ def test_two_fluents_of_one_template_need_two_names() -> None:
     [
         ('import "none.scene"', "there is no file 'none.scene'"),
         ('import "main.bdd"', "imports itself"),
-        ('import "lab.txt"', "only '.bdd' and '.scene'"),
+        ('import "lab.txt"', "only '.bdd', '.scene', '.ttl', '.json' and '.jsonld'"),
     ],
 )
 def test_an_import_that_cannot_be_used_is_reported_on_its_path(line: str, words: str) -> None:
