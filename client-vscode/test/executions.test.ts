@@ -61,7 +61,7 @@ const judged = { unit: "m", at: 1, ...words("held", 0) };
 
 test("a clause of an execution that is repeated is as good as its worst verdict", async () => {
   const world = executing();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const follower = new RunFollower(world.tree, sink, "fetch.bddx", () => 0);
   const verdicts = [0.01, -0.02, 0.03].flatMap((robustness, index): RunMessage[] => [
     message("ScenarioStarted", { ...begun, index, execution: "x:by-ours" }),
@@ -76,7 +76,7 @@ test("a clause of an execution that is repeated is as good as its worst verdict"
   await follower.settled();
   const failed = "failed part = cube1 / Then held";
   const why = "pushed (violated) [part = cube1]";
-  assert.deepEqual(told, [
+  assert.deepEqual(calls, [
     "started part = cube1 / Then held",
     "passed part = cube1 / Then held 0",
     `${failed} ${why} · 1 of 2 hold @3`,
@@ -89,7 +89,7 @@ test("a clause of an execution that is repeated is as good as its worst verdict"
 
 test("kept results of executions are theirs, the worst of several repetitions", async () => {
   const world = executing();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const clause = { clause: "t:held", position: null, sentence: "", margin: "", stale: false };
   const result = (execution: string, verdict: "holds" | "violated"): FoundScenario => ({
     uri: MODEL, variant: "t:fetch", execution, variation: 1, values: "", seconds: null, stale: false,
@@ -97,7 +97,7 @@ test("kept results of executions are theirs, the worst of several repetitions", 
   });
   const results = [result("x:by-ours", "violated"), result("x:by-ours", "holds"), result("x:by-catalog", "holds")];
   await showResults(world.tree, [...results, result("x:gone", "violated")], sink);
-  assert.deepEqual(told, [
+  assert.deepEqual(calls, [
     "failed part = cube1 / Then held violated @3",
     "failed part = cube1 / Then held violated · 1 of 2 hold @3",
     "passed part = cube1 / Then held ?",

@@ -172,18 +172,18 @@ export const words = (name: string, position: number) => ({
 });
 
 /** A run that records its messages. */
-export function recorded(): { told: string[]; sink: Sink<Node> } {
-  const told: string[] = [];
+export function recorded(): { calls: string[]; sink: Sink<Node> } {
+  const calls: string[] = [];
   const label = (item: Node) => `${item.parent?.label ?? ""} / ${item.label}`;
   const sink: Sink<Node> = {
-    started: (item) => told.push(`started ${label(item)}`),
-    passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
+    started: (item) => calls.push(`started ${label(item)}`),
+    passed: (item, duration) => calls.push(`passed ${label(item)} ${duration ?? "?"}`),
     failed: (item, { text }, place) =>
-      told.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"}`),
-    errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
-    skipped: (item) => told.push(`skipped ${label(item)}`),
+      calls.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"}`),
+    errored: (item, failure) => calls.push(`errored ${label(item)} ${failure.text}`),
+    skipped: (item) => calls.push(`skipped ${label(item)}`),
     output: () => undefined,
-    end: () => told.push("end"),
+    end: () => calls.push("end"),
   };
-  return { told, sink };
+  return { calls, sink };
 }

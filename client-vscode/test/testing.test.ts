@@ -68,7 +68,7 @@ test("an error is shown at the variant and keeps the listed scenarios", async ()
 
 test("of many scenarios the first are listed, as many again with each step further, with their kept results", async () => {
   const world = new World();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   await world.tree.load(FILE);
   const item = world.item("tidy", "sort");
   const kept = { ...found, variant: "t:sort", variation: 500, clauses: [{ ...held, clause: "t:held", position: null, stale: false }] };
@@ -80,7 +80,7 @@ test("of many scenarios the first are listed, as many again with each step furth
   assert.equal(item.children.size, 401, "an edit lists as many as were listed");
   await world.tree.expand(world.item("tidy", "sort", "More: 401 to 800"));
   await showResults(world.tree, [kept], sink);
-  assert.deepEqual(told, ["passed part = cube500 / Then held ?"]);
+  assert.deepEqual(calls, ["passed part = cube500 / Then held ?"]);
   await world.tree.expand(world.item("tidy", "sort", "More: 801 to 1,000"));
   assert.equal(world.labels(item).at(-1), "part = cube1000");
   assert.equal(item.children.size, 1000);
@@ -157,7 +157,7 @@ test("a clause that could not have been violated says so though it holds", () =>
 test("a run shows clauses of unopened files, and ends", async () => {
   const world = new World();
   let clock = 0;
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => (clock += 10));
   const judged = { robustness: 0.01, unit: "m", at: 1 };
   const because: Because = { clause: "t:placed", position: 1, words: "unknown because of placed" };
@@ -175,7 +175,7 @@ test("a run shows clauses of unopened files, and ends", async () => {
     follower.take({ run: "1", uri: FILE, message: said });
   }
   await follower.interrupt("The server stopped.");
-  assert.deepEqual(told, [
+  assert.deepEqual(calls, [
     "started part = cube2 / Then held",
     "passed part = cube2 / Then held 10",
     "started part = cube2 / Then placed",
@@ -193,7 +193,7 @@ test("a run shows clauses of unopened files, and ends", async () => {
 
 test("a clause that a cancelled run left open gets no result", async () => {
   const world = new World();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
   const open = { verdict: "unknown", reason: "the run was cancelled", failure: "the run was cancelled (unknown)", cancelled: true } as const;
   for (const said of [
@@ -203,13 +203,13 @@ test("a clause that a cancelled run left open gets no result", async () => {
     follower.take({ run: "1", uri: FILE, message: said });
   }
   await follower.settled();
-  assert.deepEqual(told, []);
+  assert.deepEqual(calls, []);
 });
 
 test("a refused run shows the reason at the requested tests", async () => {
   const world = new World();
   await world.tree.load(FILE);
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
   const refused = (variations?: number[]) => {
     const wanted = world.tree.wanted(FILE, { variant: "t:fetch", ...(variations && { variations }) });
@@ -218,7 +218,7 @@ test("a refused run shows the reason at the requested tests", async () => {
   refused();
   await world.tree.expand(world.item("tidy", "fetch"));
   refused([3]);
-  assert.deepEqual(told, ["errored tidy / fetch a run is in progress", "errored fetch / part = cube3 a run is in progress"]);
+  assert.deepEqual(calls, ["errored tidy / fetch a run is in progress", "errored fetch / part = cube3 a run is in progress"]);
 });
 
 const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };
@@ -226,13 +226,13 @@ const held = { clause: null, position: 0, sentence: "cube is held", verdict: "ho
 
 test("imported results are shown by position, with their words and their share of the time", async () => {
   const world = new World();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const PUSHED = "pushed (violated by −3.0 mm at 2.00 s)";
   const placed = { ...held, position: 1, verdict: "violated", margin: "−3.0 mm", said: "✗ −3.0 mm at 2.00 s: pushed", failure: PUSHED } as const;
   const clauses = [held, placed].map((clause) => ({ ...clause, stale: false }));
   const shown = await showResults(world.tree, [{ ...found, seconds: 1, clauses }], sink);
   assert.deepEqual(shown, { outdated: [], left: [] });
-  assert.deepEqual(told, [
+  assert.deepEqual(calls, [
     "passed part = cube2 / Then held 500",
     `failed part = cube2 / Then placed ${PUSHED} [part = cube2] @3`,
   ]);
@@ -241,7 +241,7 @@ test("imported results are shown by position, with their words and their share o
 
 test("a clause that is unknown because of one that failed is skipped, so that its scenario has failed", async () => {
   const world = new World();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const failed = { ...held, clause: "t:held", verdict: "violated", failure: "dropped (violated)", stale: false } as const;
   const because = { clause: "t:held", position: 0, words: "unknown because of held" };
   const unknown = { ...failed, clause: "t:placed", position: 1, verdict: "unknown", failure: "dropped (unknown)", because } as const;
@@ -249,21 +249,21 @@ test("a clause that is unknown because of one that failed is skipped, so that it
   const byName = [failed, unknown].map((one) => ({ ...one, position: null, because: one.because && { ...because, position: null } }));
   await showResults(world.tree, [{ ...found, clauses: byName }], sink);
   const shown = ["failed part = cube2 / Then held dropped (violated) [part = cube2] @3", "skipped part = cube2 / Then placed"];
-  assert.deepEqual(told, [...shown, ...shown]);
+  assert.deepEqual(calls, [...shown, ...shown]);
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed").description, "unknown because of held · cube is placed");
-  told.length = 0;
+  calls.length = 0;
   // Without its cause it has the error itself: a scenario of skipped clauses would have passed.
   await showResults(world.tree, [{ ...found, clauses: [{ ...failed, verdict: "holds" }, unknown] }], sink);
-  assert.match(told[1] ?? "", /^errored .*Then placed dropped \(unknown\)/);
+  assert.match(calls[1] ?? "", /^errored .*Then placed dropped \(unknown\)/);
 });
 
 test("kept results are shown by IRI; stale ones are told, and variants that are gone are passed over", async () => {
   const world = new World();
-  const { told, sink } = recorded();
+  const { calls, sink } = recorded();
   const unknown = { ...held, clause: "t:placed", position: null, verdict: "unknown", said: "? unknown: timed out", failure: "timed out (unknown)", stale: true } as const;
   const gone = { ...found, variant: "t:gone", clauses: [unknown] };
   const { outdated } = await showResults(world.tree, [{ ...found, clauses: [unknown] }, gone], sink);
-  assert.deepEqual(told, ["errored part = cube2 / Then placed timed out (unknown) [part = cube2]"]);
+  assert.deepEqual(calls, ["errored part = cube2 / Then placed timed out (unknown) [part = cube2]"]);
   assert.deepEqual(outdated, [world.item("tidy", "fetch", "part = cube2", "Then placed")]);
 });
 

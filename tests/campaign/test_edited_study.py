@@ -112,7 +112,9 @@ def test_a_rename_changes_the_studies_that_name_a_scenario(tmp_path: Path) -> No
 def test_the_local_name_of_an_iri_is_a_reference_and_another_iri_is_none(tmp_path: Path) -> None:
     local = Editing(tmp_path, f"{HEAD}scenarios: {{ <bench$0-to-tray> }} }}")
     (uri, span), *_ = references(local.snapshot, local.uri, local.cursor, with_declaration=True)
-    iri = next(one.iri for one in local.snapshot.file(uri).definitions.values() if one.span == span)  # pyright: ignore[reportOptionalMemberAccess] -- the file of a reference is loaded
+    model = local.snapshot.file(uri)
+    assert model is not None
+    iri = next(one.iri for one in model.definitions.values() if one.span == span)
     case = Editing(tmp_path, f"{HEAD}scenarios: {{ <{iri}> }} }}")
     assert case.shown() == []
     assert definition(case.snapshot, case.uri, case.text.index("bench-to-tray")) == (uri, span)

@@ -11,7 +11,7 @@ from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
 from robbdd_tools.world.composition import World, build_world
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.simulation import Simulation
-from world.worlds import BALL, CUBE, PANDA, SCENE
+from world.worlds import BALL, BIN, CUBE, OTHER_BIN, PANDA, SCENE
 
 pytestmark = pytest.mark.physics
 MANY = tuple(f"env:cube{number}" for number in range(8))
@@ -52,6 +52,16 @@ def test_dropped_objects_keep_no_clearance_but_are_not_inside_each_other() -> No
         flat = np.linalg.norm((places[:, None] - places[None])[..., :2], axis=2) + np.eye(len(MANY))
         nearest = min(nearest, flat.min())
     assert nearest < 0.04, "those of a laid-out scene are at least 85 mm apart"
+
+
+def test_nothing_is_dropped_into_a_bin_even_if_its_range_has_one() -> None:
+    middle = dropped().poses[BIN].position
+    area = f"{middle[0] - 0.15} {middle[0] + 0.15} {middle[1] - 0.25} {middle[1] + 0.25}"
+    config = (ConfigSpec(CUBE, "position_range", area), ConfigSpec(CUBE, "drop_height", f"{LOW} {HIGH}"))
+    for seed in range(40):
+        poses = build_world(replace(SCENE, config=config), seed).poses
+        apart = [np.subtract(poses[CUBE].position, poses[name].position)[:2] for name in (BIN, OTHER_BIN)]
+        assert min(np.abs(gap).max() for gap in apart) > 0.09
 
 
 def test_they_fall_and_come_to_rest_before_the_scenario_starts() -> None:

@@ -1,9 +1,9 @@
-"""Executable scenes: files as objects, poses along frames, samples from distributions, and their errors."""
+"""Executable scenes: files and entries of the catalog as elements, their poses, and their errors."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, pi, sin, sqrt
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
@@ -11,159 +11,16 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import (
-    Body,
-    Implementation,
-    Law,
-    Link,
-    ModelSource,
-    Origin,
-    Realisation,
-    SceneInstance,
-)
+from robbdd_tools.catalog.executable import Implementation, Law, Realisation, SceneInstance
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.composition import World, build_world
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.frames import Frames
+from world.scene_instances import BLOCK, SAMPLED, TRAY, catalog, file, instance, link
 from world.worlds import BENCH_WS, BIN, BIN_WS, CUBE, PANDA, SCENE, pick_place, scenario
-
-ROOT = "x:g.world.root"
-HALF = sqrt(0.5)
-BLOCK = """<mujoco><worldbody>
-  <body name="plate"><geom type="box" size=".1 .1 .01"/></body>
-  <body name="block"><freejoint/><geom type="box" size=".012 .02 .03" mass="0.05" friction="0.7"/></body>
-</worldbody></mujoco>"""
-TRAY = """<mujoco><worldbody><body name="tray"><geom type="box" size=".1 .15 .01"/>
-<site name="workspace" type="box" size=".09 .14 .05" pos="0 0 .06"/></body></worldbody></mujoco>"""
-
-
-def link(frame: str, position: tuple[float, ...], base: str = ROOT, turn: tuple[float, ...] = (1, 0, 0, 0)) -> Link:
-    return Link(frame, base, "pose", position, turn, origin=Origin("/w/cell.scenex", 9, 5))
-
-
-def instance(*links: Link, laws: tuple[Law, ...] = (), elements: tuple[Realisation, ...] = ()) -> SceneInstance:
-    frames = dict.fromkeys(end for one in links for end in (one.base, one.frame))
-    bodies = tuple(Body(frame.rpartition(".")[0], (frame,), Origin("/w/cell.scenex", 4, 9)) for frame in frames)
-    return SceneInstance("x:cell", (), elements, bodies, links, laws, ROOT)
-
-
-def catalog(element: str, name: str, body: str = "") -> Realisation:
-    bodies = ((body, "body"),) if body else ()
-    return Realisation(element, (ModelSource(f"x:{name}", "mjcf", "catalog", name, bodies=bodies),))
-
-
-def file(folder: Path, element: str, text: str, body: tuple[str, str] | None = None) -> Realisation:
-    (folder / "thing.xml").write_text(text, encoding="utf-8")
-    origin = Origin(str(folder / "cell.scenex"), 7, 11)
-    bodies = () if body is None else (body,)
-    return Realisation(element, (ModelSource("x:thing", "mjcf", "file", "thing.xml", bodies=bodies, origin=origin),))
 
 
 def world(staged: SceneInstance, seed: int = 1, scene: SceneSpec = SCENE) -> World:
     return build_world(scene, seed, None, staged)
-
-
-def test_frames_are_composed_along_what_they_are_relative_to() -> None:
-    quarter = (HALF, 0.0, 0.0, HALF)
-    staged = instance(
-        link("x:g.table.top", (1.0, 0.0, 0.5), turn=quarter), link("x:g.cube.mid", (0.2, 0.0, 0.1), "x:g.table.top")
-    )
-    pose = Frames(staged, 1).pose("x:g.cube", CUBE)
-    assert pose is not None
-    assert pose[0] == pytest.approx((1.0, 0.2, 0.6))
-    assert pose[1] == pytest.approx(quarter)
-
-
-def test_a_pose_leads_both_ways_and_goes_before_a_joint() -> None:
-    mount = Link("x:g.arm.foot", "x:g.table.top", "fixed")
-    hinge = Link("x:g.door.edge", "x:g.arm.foot", "revolute", (0.0, 0.0, 0.1), axes=("z", "x"))
-    staged = instance(
-        link(ROOT, (0.0, 0.0, -1.0), "x:g.table.top"), link("x:g.arm.foot", (0.0, 2.0, 0.0)), mount, hinge
-    )
-    frames = Frames(staged, 1)
-    table, arm, door = (frames.pose(f"x:g.{name}", "e") for name in ("table", "arm", "door"))
-    assert table is not None
-    assert arm is not None
-    assert door is not None
-    assert table[0] == pytest.approx((0.0, 0.0, 1.0))
-    assert arm[0] == pytest.approx((0.0, 2.0, 0.0))
-    assert door[0] == pytest.approx((0.0, 2.0, 0.1))
-    assert door[1] == pytest.approx((HALF, 0.0, -HALF, 0.0))
-
-
-def test_a_body_that_nothing_places_has_no_pose() -> None:
-    staged = instance(link("x:g.arm.foot", (0, 0, 0)))
-    frames = Frames(replace(staged, bodies=(*staged.bodies, Body("x:g.cube", ("x:g.cube.mid",)))), 1)
-    assert frames.pose("x:g.cube", CUBE) is None
-    assert frames.pose("x:g.world", "e") is not None
-
-
-def test_what_no_frame_leads_to_is_an_error_with_its_place() -> None:
-    staged = instance(link("x:g.cube.mid", (0, 0, 0), "x:g.shelf.board"))
-    with pytest.raises(
-        SceneError, match=r"cell\.scenex:4:9: the body 'x:g\.cube' is placed nowhere.*'x:g\.world\.root'"
-    ):
-        Frames(staged, 1).pose("x:g.cube", CUBE)
-
-
-SAMPLED = replace(link("x:g.cube.mid", ()), position_law="x:spread", scale=0.01)
-
-
-def drawn(law: Law, seed: int = 1, element: str = CUBE, attempt: int = 0) -> np.ndarray:
-    pose = Frames(instance(SAMPLED, laws=(law,)), seed).pose("x:g.cube", element, attempt)
-    assert pose is not None
-    return pose[0]
-
-
-UNIFORM = Law("x:spread", "uniform", (25.0, -40.0, 2.0), (60.0, 40.0, 2.0))
-
-
-def test_samples_follow_from_the_seed_and_differ_between_the_members_of_a_set() -> None:
-    assert drawn(UNIFORM).tolist() == drawn(UNIFORM).tolist()
-    others = [drawn(UNIFORM, 2), drawn(UNIFORM, element="env:cube2"), drawn(UNIFORM, attempt=1)]
-    assert all(drawn(UNIFORM).tolist() != other.tolist() for other in others)
-
-
-def test_a_uniform_sample_keeps_within_its_bounds_and_unit() -> None:
-    found = np.array([drawn(UNIFORM, seed) for seed in range(200)])
-    assert found.min(axis=0) == pytest.approx((0.25, -0.40, 0.02), abs=0.02)
-    assert found.max(axis=0) == pytest.approx((0.60, 0.40, 0.02), abs=0.02)
-    assert (found[:, 0] >= 0.25).all()
-    assert (found[:, 0] <= 0.60).all()
-
-
-def test_a_normal_sample_has_its_mean_and_covariance() -> None:
-    law = Law("x:spread", "normal", mean=(10.0, 0.0, 50.0), covariance=(4.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.25))
-    found = np.array([drawn(law, seed) for seed in range(3000)]) / 0.01
-    assert found.mean(axis=0) == pytest.approx((10.0, 0.0, 50.0), abs=0.15)
-    assert np.cov(found.T) == pytest.approx(np.array(law.covariance).reshape(3, 3), abs=0.3)
-
-
-def test_every_rotation_is_drawn_alike() -> None:
-    turned = replace(link("x:g.cube.mid", (0, 0, 0)), rotation=(), rotation_law="x:tumble")
-    law = Law("x:tumble", "uniform-rotation")
-    poses = [Frames(instance(turned, laws=(law,)), seed).pose("x:g.cube", CUBE) for seed in range(2000)]
-    turns = np.array([pose[1] for pose in poses if pose is not None])
-    assert np.linalg.norm(turns, axis=1) == pytest.approx(np.ones(2000))
-    # The mean angle of uniform random rotations is π/2 + 2/π.
-    assert (2 * np.arccos(np.abs(turns[:, 0]))).mean() == pytest.approx(pi / 2 + 2 / pi, abs=0.04)
-
-
-@pytest.mark.parametrize(
-    ("law", "words"),
-    [
-        (
-            Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1, 0, 0, 0, 1, 0, 0, 0, 0)),
-            "has a singular covariance",
-        ),
-        (Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1, 2, 0, 0, 1, 0, 0, 0, 1)), "is not symmetric"),
-        (Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1.0,)), "needs a covariance of 3 × 3 numbers"),
-        (Law("x:spread", "uniform", (0.0,), (1.0,)), "a position needs 3 numbers, not 1"),
-    ],
-)
-def test_a_distribution_that_cannot_be_drawn_from_is_an_error(law: Law, words: str) -> None:
-    with pytest.raises(SceneError, match=words):
-        drawn(law)
 
 
 def test_elements_stand_where_the_scene_says() -> None:

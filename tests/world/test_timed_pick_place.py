@@ -74,6 +74,29 @@ def test_it_releases_the_part_in_the_bin() -> None:
     assert run.trace.remark == ""
 
 
+def moved_during(time: float) -> FloatArray:
+    """Where the part is at last, (3,) m, if it is put 6 cm aside at a time (s) of the behaviour."""
+    run = timed()
+    simulation = run.simulation
+    seat = int(simulation.model.jnt_qposadr[simulation.model.body(CUBE).jntadr[0]])
+
+    def move() -> None:
+        start = run.trace.event_time("t:pick-start")
+        if start is not None and simulation.data.time >= start + time:
+            simulation.data.qpos[seat + 1] += 0.06
+            simulation.watchers.clear()
+
+    simulation.watchers.append(move)
+    return poses(finished(run), CUBE)[0][-1]
+
+
+def test_the_place_of_the_part_is_read_until_the_tool_is_down() -> None:
+    goal = poses(finished(timed()), "env:bin1")[0][-1]
+    assert np.abs(moved_during(seconds(0, 0) * 0.5) - goal)[:2].max() < 0.1, "in the bin"
+    assert np.abs(moved_during(seconds(0, 0) + 0.2) - goal)[:2].max() < 0.1, "in the bin"
+    assert np.abs(moved_during(seconds(0, 1) + 0.01) - goal)[:2].max() > 0.15, "missed by the fingers"
+
+
 def test_a_part_that_is_out_of_reach_is_no_failure_of_the_behaviour() -> None:
     far = replace(SCENE, config=(ConfigSpec(CUBE, "position_range", "0.8 0.84 -0.1 0.1"),))
     run = finished(timed(far))

@@ -1,4 +1,8 @@
-"""Timetables of the executor ``timed-pick-place``, and how its tool follows the targets."""
+"""Timetables of the executor ``timed-pick-place``, and how its tool follows the targets.
+
+The numbers are those of ``PickPlaceController`` and of the RMPflow configurations in the simulator's examples
+(Isaac Sim 4.2), from public copies.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,7 @@ STEPS_PER_SECOND = 60
 """Physics steps per second of the experiment, in which its phases are counted."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Timetable:
     """The ten phases of an arm's behaviour.
 
@@ -17,15 +21,13 @@ class Timetable:
     - ``offset``: added to the positions of object and goal, m.
     - ``gain`` (m/s²), ``damping`` (1/s) and ``near`` (m): towards a target at the distance d, the tool accelerates by
       ``gain · d / (|d| + near) − damping · v``, as with the target attractor of RMPflow.
-    - ``source``: where the numbers are published.
     """
 
     shares: tuple[float, ...]
-    offset: tuple[float, float, float]
     gain: float
     damping: float
-    near: float
-    source: str
+    near: float = 0.075
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def follow_speed(self) -> float:
@@ -33,30 +35,22 @@ class Timetable:
         return self.gain / self.damping
 
 
-_ISAAC = "PickPlaceController and RMPflow configuration of the simulator's examples (Isaac Sim 4.2), public copies"
 PANDA = Timetable(
-    (0.008, 0.005, 1.0, 0.1, 0.05, 0.05, 0.0025, 1.0, 0.008, 0.08),
-    (0.0, 0.005, 0.0),
-    30.0,
-    85.0,
-    0.075,
-    _ISAAC,
+    shares=(0.008, 0.005, 1.0, 0.1, 0.05, 0.05, 0.0025, 1.0, 0.008, 0.08),
+    offset=(0.0, 0.005, 0.0),
+    gain=30.0,
+    damping=85.0,
 )
 UR10 = Timetable(
-    (0.01, 0.0035, 0.01, 1.0, 0.008, 0.005, 0.005, 1.0, 0.01, 0.08),
-    (0.0, 0.0, 0.02),
-    80.0,
-    120.0,
-    0.075,
-    _ISAAC,
+    shares=(0.01, 0.0035, 0.01, 1.0, 0.008, 0.005, 0.005, 1.0, 0.01, 0.08),
+    offset=(0.0, 0.0, 0.02),
+    gain=80.0,
+    damping=120.0,
 )
 OTHERS = Timetable(
-    (0.008, 0.005, 0.1, 0.1, 0.0025, 0.001, 0.0025, 1.0, 0.008, 0.08),
-    (0.0, 0.0, 0.0),
-    30.0,
-    85.0,
-    0.075,
-    _ISAAC,
+    shares=(0.008, 0.005, 0.1, 0.1, 0.0025, 0.001, 0.0025, 1.0, 0.008, 0.08),
+    gain=30.0,
+    damping=85.0,
 )
 
 
