@@ -76,6 +76,18 @@ def test_a_wrong_name_is_reported_with_the_nearest(
     assert [fix.edits[0].text for fix in found.fixes] == [f"{quote}{name}{quote}" for name in fixes]
 
 
+def test_a_body_that_is_mapped_without_a_name_has_its_own_name_in_the_file(tmp_path: Path) -> None:
+    short = edited(' to "base"', "")
+    assert findings(tmp_path, short.replace("<poses.foot>", "<poses.base>")) == []
+    (found,) = findings(tmp_path, short)
+    assert found.message == "the model's file has no body 'foot'; it has the bodies 'hand', 'base', 'elbow'"
+    text = HEAD + short
+    assert text[found.span.start : found.span.end] == "poses.foot"
+    (edit,) = found.fixes[1].edits
+    assert (found.fixes[1].title, edit.text) == ("Add 'to \"base\"'", ' to "base"')
+    assert text[: edit.span.start].endswith("map body <poses.foot>")
+
+
 def test_names_in_a_urdf_file_are_links_and_joints(tmp_path: Path) -> None:
     found = findings(tmp_path, LINKS)
     assert [one.message.partition(";")[0] for one in found] == [

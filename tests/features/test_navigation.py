@@ -224,6 +224,39 @@ def test_the_outline_nests_names_as_they_are_declared() -> None:
     ]
 
 
+INSTANCE = """//- main.scenex
+import "lab.scene"
+ns s = 'https://example.org/s/'
+scene inst (ns=s) bench_sim {
+    scene: <bench_scene>
+    kgraph (ns=s) poses { body foot { frame middle { } } }
+    model walls as mjcf { sys path = 'walls.xml' }
+    ws <places.bench_ws> { camera above { frame: <poses.foot.middle> type: rgb
+        resolution: (640, 480) fov: 60 deg update-rate: 30 Hz } }
+    obj set <parts> { model part as mjcf { catalog "cube" } obj <parts.nut> { model nut as mjcf { catalog "ball" } } }
+    agn <arms.panda> { }
+}
+"""
+
+
+def test_the_outline_of_a_scene_instance_has_the_elements_that_it_models() -> None:
+    case = fixture(INSTANCE)
+    assert shown(outline(case.snapshot, case.uri))[1:] == [
+        "bench_sim: scene instance",
+        "  poses: kinematic graph",
+        "    foot: body",
+        "      middle: frame",
+        "  walls: model",
+        "  bench_ws: workspace",
+        "    above: sensor",
+        "  parts: object set",
+        "    part: model",
+        "    nut: object",
+        "      nut: model",
+        "  panda: agent",
+    ]
+
+
 def test_the_outline_survives_broken_text() -> None:
     case = fixture(MODEL.replace("var robot", "var robot !!").replace("template: <fetch>", "template <fetch>"))
     assert "  robot: variable" in shown(outline(case.snapshot, case.uri))

@@ -48,10 +48,49 @@ def test_overlaps_and_unusable_models_are_reported_with_their_places(cell: Path)
     rewrite(cell, (ON_THE_TABLE, IN_THE_TABLE), ("home: (0,", "home: (9,"))
     unusable, overlap = found(cell.with_name("tidy.bddx"))
     assert unusable == (
-        "67:15: warning: the home position 9 of the joint 'yaw' is outside its limits, -3 to 3 in five.xml"
+        "78:20: warning: the home position 9 of the joint 'yaw' is outside its limits, -3 to 3 in five.xml"
         " [unusable-model]"
     )
     assert overlap == "65:10: warning: 'bin' and 'table' overlap by 20 mm: nothing may overlap at the start [overlap]"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "words"),
+    [
+        (
+            "0.2, 1.6",
+            "0.2, 99",
+            "78:28",
+            "the home position 99 of the joint 'elbow' is outside its limits, -2.8 to 2.8",
+        ),
+        ("0.2, 1.6, ", "", "78:19", "the arm has 5 joints (yaw, shoulder, elbow, pitch, roll), 'home' has 3 numbers"),
+        (
+            "(1.5, 1.5, ",
+            "(1.5, ",
+            "79:23",
+            "the arm has 5 joints (yaw, shoulder, elbow, pitch, roll), 'velocity' has 4",
+        ),
+        ("open: 0.04", "open: 40", "73:23", "an actuator 'grip' that takes values from -0.002 to 0.04: 'open' cannot"),
+        ("close: -0.002", "close: -2", "74:24", "'close' cannot be -2"),
+        ("open: 0.04", "open: -0.002", "74:24", "is open and closed at the same value, -0.002"),
+        ("stroke: 80 mm", "stroke: 80 cm", "76:25", "opens 0.080 m, not the stated stroke of 0.800 m"),
+    ],
+)
+def test_a_number_that_contradicts_the_file_is_reported_at_its_place(
+    cell: Path, old: str, new: str, place: str, words: str
+) -> None:
+    rewrite(cell, (old, new))
+    (only,) = found(cell)
+    assert only.startswith(f"{place}: warning: ")
+    assert words in only
+    assert only.endswith(" [unusable-model]")
+
+
+def test_a_fault_that_no_stated_entry_causes_is_reported_at_the_model(cell: Path) -> None:
+    rewrite(cell, ("                open: 0.04\n", ""), ("                close: -0.002\n", ""))
+    rewrite(cell.with_name("five.xml"), (' ctrlrange="-0.002 0.04"', ""))
+    (only,) = found(cell)
+    assert only.startswith("67:15: warning: the gripper of five.xml has an actuator 'grip' without a 'ctrlrange'")
 
 
 def test_a_name_that_the_text_of_the_file_lacks_is_reported_once(cell: Path) -> None:

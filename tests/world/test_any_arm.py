@@ -171,6 +171,16 @@ NEVER = MJCF.replace('range="0 0.04"', 'range="0.03 0.04"').replace('ctrlrange="
             replace(FACES, open=-0.002, closed=0.04),
             "has 'open' and 'close' reversed: 0.080 m between its faces at",
         ),
+        (
+            MJCF,
+            replace(FACES, open=4.0),
+            "has an actuator 'grip' that takes values from -0.002 to 0.04: 'open' cannot be 4",
+        ),
+        (
+            strangers.VACUUM,
+            ArmModel(closed=2.0),
+            "takes values from 0 to 1: 'close' cannot be 2",
+        ),
         (MJCF, replace(FACES, stroke=0.15), "opens 0.080 m, not the stated stroke of 0.150 m"),
         (MJCF, ArmModel(pads=("left_pad", "hand")), "the gripper of arm.xml"),
         (

@@ -21,7 +21,9 @@ def _drawn(instance: SceneInstance) -> dict[str, Any]:
     from robbdd_tools.world.instance_drawing import drawn_instance
 
     drawn, errors = drawn_instance(instance)
-    faults = [SceneFault(kind_of(error), error.reason, error.origin or instance.origin) for error in errors]
+    faults = [
+        SceneFault(kind_of(error), error.reason, error.origin or instance.origin, error.entry) for error in errors
+    ]
     return {**drawn, "iri": instance.iri, "faults": [asdict(fault) for fault in faults]}
 
 

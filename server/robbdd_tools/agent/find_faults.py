@@ -29,7 +29,7 @@ def _faults(instance: SceneInstance) -> Iterator[SceneFault]:
     from robbdd_tools.world.fixed_faults import fixed_faults
 
     for error in fixed_faults(instance):
-        yield SceneFault(kind_of(error), error.reason, error.origin or instance.origin)
+        yield SceneFault(kind_of(error), error.reason, error.origin or instance.origin, error.entry)
 
 
 def kind_of(error: SceneError) -> FaultKind:

@@ -190,6 +190,14 @@ class ArmModel:
 
 
 @dataclass(frozen=True, slots=True)
+class ModelEntry:
+    """An entry of a model, by its keyword, such as ``home``; ``number`` is the index of one of its numbers."""
+
+    keyword: str
+    number: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ModelSource:
     """The source of a model.
 

@@ -22,6 +22,7 @@ from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
 from robbdd_tools.checks.execution_fit import execution_fit
 from robbdd_tools.checks.foreign_variable import foreign_variable
+from robbdd_tools.checks.joint_ends import joint_ends
 from robbdd_tools.checks.many_scenarios import many_scenarios
 from robbdd_tools.checks.memo import findings_in
 from robbdd_tools.checks.missing_value import missing_value
@@ -66,6 +67,7 @@ DECLARATION_RULES = (
     empty_duration,
     empty_set,
     foreign_variable,
+    joint_ends,
     many_scenarios,
     missing_value,
     no_emitter,

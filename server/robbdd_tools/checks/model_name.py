@@ -12,6 +12,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
+from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.model_parts import ModelParts, model_parts
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
 
@@ -65,25 +66,48 @@ def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
             if parts is None or parts.may_have(named.text.value, *ACCEPTED[named.entry]):
                 continue
             span = named.text.span.shifted(placed.offset)
-            message, near = _missing(named, parts)
+            message, near = _missing(named.text.value, WANTED[named.entry], parts)
             quote = file.document.text[span.start]
             edits = ((name, (Edit(file.document.uri, span, f"{quote}{name}{quote}"),)) for name in near)
             fixes = tuple(Fix(f"Change to '{name}'", edit) for name, edit in edits)
             yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, message, fixes=fixes)
+        yield from _unmapped(file, placed, own.parent)
+
+
+def _unmapped(file: FileAnalysis, placed: PlacedDeclaration, folder: Path) -> Iterator[Diagnostic]:
+    """Report each body that is mapped without ``to`` to a file that has no body of its name."""
+    uri = file.document.uri
+    for model in _models(placed.declaration):
+        parts = parts_of(model, folder)
+        for mapping in model.mappings if parts is not None else ():
+            name = mapping.reference.path.rpartition(".")[2]
+            if parts is None or not _is_body(mapping) or mapping.target is not None or parts.may_have(name, "body"):
+                continue
+            span = mapping.reference.span.shifted(placed.offset)
+            end = file.document.text.index(">", span.start) + 1
+            message, near = _missing(name, ("body",), parts)
+            fixes = tuple(Fix(f"Add 'to \"{one}\"'", (Edit(uri, Span(end, end), f' to "{one}"'),)) for one in near)
+            yield Diagnostic(uri, span, Severity.WARNING, CODE, message, fixes=fixes)
 
 
 @kept_with_key
 def part_names(declaration: Declaration) -> tuple[PartName, ...]:
     """Return the names of parts in the models of a declaration."""
-    if not isinstance(declaration.tree, tree.SceneInstance):
-        return ()
-    models = [node for node in walk(declaration.tree) if isinstance(node, tree.Model)]
-    return tuple(named for model in models for named in _named(model))
+    return tuple(named for model in _models(declaration) for named in _named(model))
+
+
+def _models(declaration: Declaration) -> list[tree.Model]:
+    root = declaration.tree
+    return [node for node in walk(root) if isinstance(node, tree.Model)] if isinstance(root, tree.SceneInstance) else []
+
+
+def _is_body(mapping: tree.Mapping) -> bool:
+    return mapping.reference.role == "Body"
 
 
 def _named(model: tree.Model) -> Iterator[PartName]:
     for mapping in model.mappings:
-        if mapping.target is not None and mapping.reference.role == "Body":
+        if mapping.target is not None and _is_body(mapping):
             yield PartName(model, "map body", mapping.target)
     if model.tool is not None:
         yield PartName(model, "tool", model.tool)
@@ -102,9 +126,8 @@ def parts_of(model: tree.Model, folder: Path) -> ModelParts | None:
     return parts if parts.format else None
 
 
-def _missing(named: PartName, parts: ModelParts) -> tuple[str, list[str]]:
+def _missing(name: str, kinds: tuple[str, ...], parts: ModelParts) -> tuple[str, list[str]]:
     """Return the message on a name that the file does not have, and similar names."""
-    kinds, name = WANTED[named.entry], named.text.value
     known = list(dict.fromkeys(part.name for part in parts.names(*kinds)))
     near = get_close_matches(name, known, n=MAX_OFFERED, cutoff=MIN_ALIKE)
     message = f"the model's file has no {' or '.join(kinds)} '{name}'"

@@ -51,6 +51,7 @@ _FRICTION = _Quantity("a friction", low=setting_of("friction").low, high=setting
 _RATE = _Quantity("an update rate", above=True)
 USUAL_RATE = 100
 """Update rate (Hz) that a fix writes, as in policies that quick fixes create."""
+_RATIO = _Quantity("a gear ratio", above=True)
 _PIXELS = _Quantity("a number of pixels", low=1.0, whole=True)
 _SPEED = _Quantity("a speed limit", above=True)
 _WHOLE_TURN = {"deg": 360.0, "rad": 2 * pi}
@@ -105,6 +106,8 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
             yield node.rate, _RATE
         case tree.Inertia():
             yield node.mass, _Quantity("a mass")
+        case tree.Actuation():
+            yield node.ratio, _RATIO
         case tree.Gripper():
             yield node.stroke, _Quantity("a stroke", above=True)
         case tree.Model() if node.velocity is not None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.studies import is_study
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.study_text import STUDY, read_study
 
 if TYPE_CHECKING:
@@ -14,10 +17,19 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
+_KINDS = {
+    "Object": SymbolKind.OBJECT.value,
+    "ObjectSet": SymbolKind.OBJECT_SET.value,
+    "Workspace": SymbolKind.WORKSPACE.value,
+    "Agent": SymbolKind.AGENT.value,
+    "AgentSet": SymbolKind.AGENT_SET.value,
+}
+"""Kinds of the elements that a scene instance models, by the roles of their names."""
+
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A declared name with the names that are declared inside it.
+    """A declared name, or an element of a scene instance, with the names that are declared inside it.
 
     It has the absolute span of the name and the absolute span of the whole declaration.
     """
@@ -39,7 +51,33 @@ def outline(snapshot: Snapshot, uri: str) -> list[Item]:
     inner: dict[str, list[Definition]] = {}
     for path, definition in analysis.definitions.items():
         inner.setdefault(path.rpartition(".")[0], []).append(definition)
-    return [_item(definition, inner) for definition in inner.get("", [])]
+    items = [_item(definition, inner) for definition in inner.get("", [])]
+    instances = {
+        placed.offset + root.name.span.start: (root, placed.offset)
+        for placed in analysis.declarations
+        if isinstance(root := placed.declaration.tree, tree.SceneInstance)
+    }
+    return [_with_elements(item, *instances.get(item.span.start, (None, 0))) for item in items]
+
+
+def _with_elements(item: Item, instance: tree.SceneInstance | None, offset: int) -> Item:
+    """Return the item of a scene instance with the elements that it models; any other item as it is."""
+    modelled = [entry for entry in instance.entries if isinstance(entry, tree.Modelled)] if instance is not None else []
+    return replace(item, children=_grouped(item.children, modelled, offset)) if modelled else item
+
+
+def _grouped(items: tuple[Item, ...], modelled: Sequence[tree.Modelled], offset: int) -> tuple[Item, ...]:
+    """Return items, with those inside of a modelled element as its children, in text order."""
+    outer = list(items)
+    for one in modelled:
+        extent = one.span.shifted(offset)
+        own = [item for item in outer if extent.start <= item.span.start < extent.end]
+        outer = [item for item in outer if item not in own]
+        inner = [entry for entry in one.entries if isinstance(entry, tree.Modelled)]
+        name, kind = one.reference.path.rpartition(".")[2], _KINDS.get(one.reference.role, "object")
+        span = one.reference.span.shifted(offset)
+        outer.append(Item(name, kind, span, extent, _grouped(tuple(own), inner, offset)))
+    return tuple(sorted(outer, key=lambda item: item.extent.start))
 
 
 def _of_study(document: Document) -> list[Item]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from robbdd_tools.catalog.executable import Origin
+from robbdd_tools.catalog.executable import ModelEntry, Origin
 
 
 class FaultKind(StrEnum):
@@ -18,8 +18,12 @@ class FaultKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SceneFault:
-    """A reason for which every run of a scene instance would refuse it, and its source position."""
+    """A reason for which every run of a scene instance would refuse it, and its source position.
+
+    ``entry`` is the entry of the model at that position that is wrong, if a single one is.
+    """
 
     kind: str
     reason: str
     origin: Origin | None
+    entry: ModelEntry | None = None

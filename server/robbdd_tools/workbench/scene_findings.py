@@ -20,6 +20,7 @@ from robbdd_tools.base.processes import describe_exit
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
+from robbdd_tools.workbench.model_entries import entry_span
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource, SceneInstance
@@ -146,5 +147,6 @@ def _diagnostic(snapshot: Snapshot, uri: str, fault: SceneFault) -> Diagnostic:
     document = snapshot.document(place)
     start = document.line_starts[fault.origin.line - 1] + fault.origin.column - 1
     token = _TOKEN.match(document.text, start)
-    span = Span(start, start if token is None else token.end())
+    entry = None if fault.entry is None else entry_span(snapshot, place, start, fault.entry)
+    span = entry or Span(start, start if token is None else token.end())
     return Diagnostic(place, span, Severity.WARNING, code, fault.reason)

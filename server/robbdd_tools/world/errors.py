@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.executable import Origin
+    from robbdd_tools.catalog.executable import ModelEntry, Origin
     from robbdd_tools.monitor.fault import Fault
 
 
@@ -26,13 +26,17 @@ class _WithFault(Exception):
 class SceneError(_WithFault):
     """The scene cannot be built; the message says what is wrong and what to change.
 
-    ``origin`` is the source position that the message begins with; ``reason`` is the message without it.
+    ``origin`` is the source position that the message begins with; ``reason`` is the message without it. ``entry`` is
+    the entry of the model at ``origin`` that is wrong, if a single one is.
     """
 
-    def __init__(self, reason: str, fault: Fault | None = None, origin: Origin | None = None) -> None:
+    def __init__(
+        self, reason: str, fault: Fault | None = None, origin: Origin | None = None, entry: ModelEntry | None = None
+    ) -> None:
         super().__init__(at(origin) + reason, fault)
         self.reason = reason
         self.origin = origin
+        self.entry = entry
 
 
 class BehaviourError(Exception):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.catalog.executable import ModelEntry
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.gripper_faces import length_of
@@ -45,9 +46,11 @@ class GripperParts:
         """The joints of the fingers."""
         return [joint for body in self.bodies[1:] for joint in body.joints]
 
-    def error(self, text: str) -> SceneError:
-        """Return an error about the gripper."""
-        return SceneError(f"the gripper of {self.source.name} {text}{self._note}", origin=self.source.origin)
+    def error(self, text: str, keyword: str = "") -> SceneError:
+        """Return an error about the gripper, and about the entry of the model with a keyword."""
+        entry = ModelEntry(keyword) if keyword else None
+        reason = f"the gripper of {self.source.name} {text}{self._note}"
+        return SceneError(reason, origin=self.source.origin, entry=entry)
 
     def compiled(self) -> Any:
         """Return the compiled model of the arm. Raises ``SceneError``."""

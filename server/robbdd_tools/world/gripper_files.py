@@ -21,6 +21,8 @@ SETTLING, STILL = 5000, 1e-3
 """Largest number of steps of 2 ms in which a gripper opens or closes; speed (rad/s, m/s) of joints at rest."""
 CONTRADICTION = 0.25
 """Share by which a stated stroke may differ from the measured one."""
+SLACK = 1e-6
+"""How far a stated value may be outside the range of the actuator: files round."""
 TIP = 0.015
 """Distance (m) of the tool from the ends of the gripping faces, half the length of usual pads."""
 
@@ -94,8 +96,20 @@ class GripperReader:
         if closed is None:
             closed = low if opened == high else high
         if opened == closed:
-            raise self._parts.error(f"is open and closed at the same value, {opened:g}")
+            keyword = "close" if self._arm.closed is not None else "open"
+            raise self._parts.error(f"is open and closed at the same value, {opened:g}", keyword)
+        self._refuse_outside(actuator)
         return min(opened, closed), max(opened, closed)
+
+    def _refuse_outside(self, actuator: Any) -> None:
+        """Raise ``SceneError`` if a stated value is outside the range of an actuator: the engine would change it."""
+        model = self._parts.compiled()
+        number = model.actuator(actuator.name).id
+        low, high = (float(bound) for bound in model.actuator_ctrlrange[number])
+        for keyword, value in (("open", self._arm.open), ("close", self._arm.closed)):
+            if value is not None and model.actuator_ctrllimited[number] and not low - SLACK <= value <= high + SLACK:
+                text = f"has an actuator '{actuator.name}' that takes values from {low:g} to {high:g}"
+                raise self._parts.error(f"{text}: '{keyword}' cannot be {value:g}", keyword)
 
     def _senses(self, gaps: dict[float, float]) -> tuple[float, float]:
         """Return the values that open and close the gripper. Raises ``SceneError`` if they contradict the file."""
@@ -105,14 +119,14 @@ class GripperReader:
         if gaps[opened] - gaps[closed] < MOVES:
             raise self._parts.error(f"does not move its faces: {described}. Name other pads or another actuator")
         if stated[0] not in (None, opened) or stated[1] not in (None, closed):
-            raise self._parts.error(f"has 'open' and 'close' reversed: {described}")
+            raise self._parts.error(f"has 'open' and 'close' reversed: {described}", "open")
         if gaps[closed] > NEVER_MEET:
             raise self._parts.error(
-                f"has faces that never meet: {described}. Name other pads, or another value for close"
+                f"has faces that never meet: {described}. Name other pads, or another value for close", "close"
             )
         stroke = self._arm.stroke
         if stroke and abs(stroke - gaps[opened]) > CONTRADICTION * gaps[opened]:
-            raise self._parts.error(f"opens {gaps[opened]:.3f} m, not the stated stroke of {stroke:.3f} m")
+            raise self._parts.error(f"opens {gaps[opened]:.3f} m, not the stated stroke of {stroke:.3f} m", "stroke")
         return opened, closed
 
     def _face(self, name: str) -> Any:
@@ -223,6 +237,7 @@ class GripperReader:
         _, high = extent(model, data, str(face.name), axis)
         size = model.geom_size[geom]
         low_control, high_control = (float(value) for value in actuator.ctrlrange)
+        self._refuse_outside(actuator)
         opened = self._arm.open if self._arm.open is not None else low_control
         closed = self._arm.closed if self._arm.closed is not None else (high_control or 1.0)
         return FoundGripper(

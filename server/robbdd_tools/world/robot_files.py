@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.api import GripperKind, RobotModel
-from robbdd_tools.catalog.executable import ArmModel
+from robbdd_tools.catalog.executable import ArmModel, ModelEntry
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
@@ -93,7 +93,7 @@ def _read_robot(source: ModelSource, name: str) -> RobotModel:
     for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
-            raise SceneError(counted, origin=source.origin)
+            raise SceneError(counted, origin=source.origin, entry=ModelEntry(what))
     _refuse_outside(model, source, joints, home)
     key = f"{source.iri}#{name}"
     _prepared[key] = spec
@@ -285,11 +285,11 @@ def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
 
 
 def _refuse_outside(model: Any, source: ModelSource, joints: tuple[str, ...], home: tuple[float, ...]) -> None:
-    for joint, value in zip(joints, home, strict=True):
+    for index, (joint, value) in enumerate(zip(joints, home, strict=True)):
         number = model.joint(joint).id
         low, high = (float(bound) for bound in model.jnt_range[number])
         if model.jnt_limited[number] and not low - 1e-6 <= value <= high + 1e-6:
             text = (
                 f"the home position {value:.4g} of the joint '{joint}' is outside its limits, {low:.4g} to {high:.4g}"
             )
-            raise SceneError(f"{text} in {source.name}", origin=source.origin)
+            raise SceneError(f"{text} in {source.name}", origin=source.origin, entry=ModelEntry("home", index))
