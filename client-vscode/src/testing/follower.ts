@@ -3,7 +3,7 @@ import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } fr
 import { RunReport } from "../runs/report";
 import type { Item } from "./items";
 import type { ListedTest, Place } from "./listing";
-import { type Failure, type Outcome, folded, outcomeOf } from "./outcomes";
+import { type Failure, type Outcome, folded, inFailed, outcomeOf } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
@@ -23,6 +23,10 @@ interface Begun<I> {
   readonly values: string;
   /** Positions of the clauses that have failed or have an error. */
   readonly failing: Set<number>;
+  /** Whether a clause is violated. */
+  failed: boolean;
+  /** Displays of unknown clauses, which wait for the end of the scenario: the editor never takes back an error. */
+  waiting: ((failed: boolean) => void)[];
   /** When the judgement of the current clause began, ms. */
   since: number;
 }
@@ -52,6 +56,8 @@ export class RunFollower<I extends Item<I>> {
         this.start(message, instant);
       } else if (message.type === "ClauseJudged") {
         this.judge(message, instant);
+      } else if (message.type === "ScenarioFinished") {
+        this.showWaiting(this.scenarios.get(message.index));
       }
       const scenario = "index" in message && message.index !== null ? this.scenarios.get(message.index) : undefined;
       for (const line of this.report.add(message)) {
@@ -77,6 +83,9 @@ export class RunFollower<I extends Item<I>> {
   /** No more messages of the server will follow. */
   async interrupt(reason: string): Promise<void> {
     await this.pending;
+    for (const scenario of this.scenarios.values()) {
+      this.showWaiting(scenario);
+    }
     for (const line of this.report.interrupt(reason)) {
       this.sink.output(line);
     }
@@ -95,7 +104,7 @@ export class RunFollower<I extends Item<I>> {
     const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
-      this.scenarios.set(message.index, { item, values: message.values, failing: new Set(), since: instant });
+      this.scenarios.set(message.index, { item, values: message.values, failing: new Set(), failed: false, waiting: [], since: instant });
     }
   }
 
@@ -124,8 +133,23 @@ export class RunFollower<I extends Item<I>> {
     }
     const outcome = this.worst.add(item, judged, message.robustness);
     this.tree.note(item, outcome.note);
-    showOutcome(this.sink, item, outcome, message.source, instant - scenario.since);
+    const duration = instant - scenario.since;
+    const show = (failed: boolean) => {
+      showOutcome(this.sink, item, failed ? inFailed(outcome) : outcome, message.source, duration);
+    };
+    scenario.failed ||= judged.state === "failed";
+    if (outcome.state === "errored") {
+      scenario.waiting.push(show);
+    } else {
+      show(false);
+    }
     scenario.since = instant;
+  }
+
+  private showWaiting(scenario: Begun<I> | undefined): void {
+    for (const show of scenario?.waiting.splice(0) ?? []) {
+      show(scenario?.failed === true);
+    }
   }
 
   private clause(scenario: Begun<I>, { position, clause, name, sentence, role, source }: ClauseStarted | ClauseJudged): I {

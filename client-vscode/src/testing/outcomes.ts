@@ -60,6 +60,14 @@ export function folded(outcome: Outcome, because: Because | Immutable<FoundBecau
   return because && shown ? { state: "skipped", note: because.words } : outcome;
 }
 
+/**
+ * The outcome of a clause in a scenario that has failed: an unknown clause is skipped, with its reason as note, since the
+ * editor would otherwise show the scenario as errored, and everything else says that it has failed.
+ */
+export function inFailed(outcome: Outcome): Outcome {
+  return outcome.state === "errored" ? { state: "skipped", note: outcome.note } : outcome;
+}
+
 /** `values` distinguish the scenario from others shown at the same clause. */
 export function failureOf({ failure }: Pick<Judged, "failure">, values: string): Failure {
   return { text: values === "" ? failure : `${failure} [${values}]` };

@@ -4,7 +4,7 @@ import type { Immutable } from "../immutable";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
-import { type Outcome, failureOf, folded } from "./outcomes";
+import { type Outcome, failureOf, folded, inFailed } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
@@ -42,11 +42,13 @@ export async function showResults<I extends Item<I>>(
     }
     const scenario = tree.scenario(variant, found.variation, found.values);
     const whole = found.seconds === null ? undefined : found.seconds * 1000;
+    const failed = found.clauses.some(({ verdict }) => verdict === "violated");
     for (const clause of found.clauses) {
       for (const item of itemsOf(tree, scenario, clause)) {
         // Only whole executions are timed: each clause gets an equal share, so that the sum is right.
         const share = whole === undefined ? undefined : whole / found.clauses.length;
-        const outcome = worst.add(item, folded(outcomeOf(clause, found.values), clause.because, isCauseShown(clause, found.clauses)));
+        const own = folded(outcomeOf(clause, found.values), clause.because, isCauseShown(clause, found.clauses));
+        const outcome = worst.add(item, failed ? inFailed(own) : own);
         tree.note(item, outcome.note);
         showOutcome(sink, item, outcome, tree.about(item)?.place ?? null, share);
         if (found.stale || clause.stale) {

@@ -33,8 +33,9 @@ def _value(model: tree.Model, entry: ModelEntry) -> tree.Node | None:
     match entry.keyword:
         case "home" | "velocity":
             vector = model.home if entry.keyword == "home" else model.velocity
-            is_one = vector is not None and entry.number is not None and entry.number < len(vector.values)
-            return vector.values[entry.number] if is_one else vector
+            if vector is None or entry.number is None or entry.number >= len(vector.values):
+                return vector
+            return vector.values[entry.number]
         case "open":
             return None if gripper is None else gripper.open
         case "close":
