@@ -103,6 +103,29 @@ def truth(topic: str, value: bool | int, received: float) -> Message:
     return Message(topic, received, "std_msgs/msg/Bool" if isinstance(value, bool) else TRINARY, make)
 
 
+def joints(
+    names: Sequence[str],
+    positions: Sequence[float],
+    stamp: float,
+    *,
+    efforts: Sequence[float] = (),
+    topic: str = "/joint_states",
+    received: float | None = None,
+) -> Message:
+    """The states of joints. With a ``stamp`` of zero, its header has no time."""
+
+    def make(store: Any) -> Any:
+        return store.types["sensor_msgs/msg/JointState"](
+            header=header(store, stamp, ""),
+            name=list(names),
+            position=np.array(positions, dtype=float),
+            velocity=np.empty(0),
+            effort=np.array(efforts, dtype=float),
+        )
+
+    return Message(topic, stamp if received is None else received, "sensor_msgs/msg/JointState", make)
+
+
 def poses(topic: str, places: Sequence[Sequence[float]], *, stamp: float) -> Message:
     """A list of poses without names."""
 

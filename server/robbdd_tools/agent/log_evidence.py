@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.agent.log_arms import find_arms
+from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.catalog.settings import written
-from robbdd_tools.judging.log_names import (
-    FramesProblem,
-    elements_of,
-    frame_of,
-    local_name,
-    occurrences_of,
-    stated_frames,
-)
-from robbdd_tools.logs.transforms import Unconnected, poses_at, root_of, rotated
+from robbdd_tools.judging.log_names import elements_of, local_name, occurrences_of
+from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.world.extent import outline_of
@@ -26,11 +21,12 @@ from robbdd_tools.world.scene import Cast, cast_scene, contents_of
 from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
+    from robbdd_tools.agent.log_arms import LoggedArm
+    from robbdd_tools.agent.log_frames import Poses
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.logs.log_contents import LogContents, TextStamp, Truths
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
-    from robbdd_tools.world.pose import Pose
 
 START, END = "scenario-start", "scenario-end"
 HOLDS = "holds"
@@ -59,10 +55,17 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     remarks = list(contents.remarks)
     events = _events(spec, contents, remarks)
     elements = (*cast.objects, *cast.agents)
-    frames = _Frames(spec, cast, contents, request, remarks)
-    times = _times(frames.used(), events, contents, request)
+    arms = find_arms(cast, contents, request, remarks)
+    frames = Frames(spec, cast, contents, request, remarks, arms)
+    times = _times([*frames.observed(), *(arm.times() for arm in arms.values())], events, contents, request)
+    joints = {agent: arm.positions(times, request.max_gap) for agent, arm in arms.items()}
     poses = {element: found for element in cast.objects if (found := frames.object_poses(element, times)) is not None}
-    poses |= {element: found for element in cast.agents if (found := frames.poses(element, times)) is not None}
+    for agent in cast.agents:
+        found = frames.poses(agent, times)
+        if found is None and agent in arms:
+            found = _tool(arms[agent], joints[agent], frames.base_poses(agent, times))
+        if found is not None:
+            poses[agent] = found
     names = tuple(poses)
     trace = Trace(
         names,
@@ -78,100 +81,12 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         log=Path(request.path).name,
         uncertain=elements_of(request.uncertainty, elements),
         truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
+        joint_clearances={
+            agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
+        },
         immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
     )
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
-
-
-class _Frames:
-    """The frames of a scenario's elements in a log, and their poses. ``remarks`` gets sentences on what is missing."""
-
-    def __init__(
-        self, spec: ScenarioSpec, cast: Cast, contents: LogContents, request: LogRequest, remarks: list[str]
-    ) -> None:
-        self._spec = spec
-        self._cast = cast
-        self._tracks = contents.tracks
-        self._max_gap = request.max_gap
-        self._remarks = remarks
-        self.of: dict[str, str] = {}
-        """Element → its frame."""
-        stated = {**stated_frames(spec), **elements_of(request.frames, (*cast.objects, *cast.agents))}
-        for element in (*cast.objects, *cast.agents):
-            try:
-                self.of[element] = frame_of(element, contents.tracks, stated)
-            except FramesProblem as problem:
-                if element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused:
-                    remarks.append(str(problem))
-        self._stated_world = bool(request.world)
-        self._world = request.world.lstrip("/") or self._root()
-
-    def used(self) -> set[str]:
-        """Return the frames of elements, and those between them and their roots."""
-        found: set[str] = set()
-        for frame in self.of.values():
-            while frame in self._tracks and frame not in found:
-                found.add(frame)
-                frame = self._tracks[frame].parent
-        return found
-
-    def poses(self, element: str, times: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return positions (n, 3) m and orientations (n, 4) of an element's frame; ``None`` if it has none."""
-        if element not in self.of:
-            return None
-        try:
-            return poses_at(self.of[element], self._world, self._tracks, times, self._max_gap)
-        except Unconnected as problem:
-            self._remarks.append(str(problem))
-            return None
-
-    def object_poses(self, element: str, times: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return the poses of an object's centre: in the log or, if it is not there, in the ``.scenex``."""
-        if element in self.of:
-            found = self.poses(element, times)
-            if found is None:
-                return None
-            place, turn = found
-            return place - rotated(turn, np.tile(self._cast.objects[element].frame, (len(times), 1))), turn
-        pose = self._stated_pose(element)
-        if pose is None:
-            return None
-        if not self._is_world():
-            hint = "name the frame of the world with --world FRAME"
-            self._remarks.append(f"{element} is not in the log, and the .scenex places it in the world: {hint}")
-            return None
-        self._remarks.append(f"{element} is not in the log, so it stands where the .scenex places it")
-        upright = (float(np.cos(pose.yaw / 2)), 0.0, 0.0, float(np.sin(pose.yaw / 2)))
-        return np.tile(pose.position, (len(times), 1)), np.tile(pose.rotation or upright, (len(times), 1))
-
-    def _stated_pose(self, element: str) -> Pose | None:
-        """Return the pose of an object that the ``.scenex`` states; ``None`` if it states none, or draws it."""
-        if self._spec.instance is None:
-            return None
-        # A pose that is drawn at random differs with another seed.
-        other = replace(self._cast, staging=Staging(self._spec.instance, self._spec.seed + 1))
-        pose = self._cast.pose(element)
-        return pose if pose == other.pose(element) else None
-
-    def _is_world(self) -> bool:
-        """Return whether the frame in which poses are given is that of the ``.scenex``: by its name, or by the user."""
-        anchor = "" if self._spec.instance is None else self._spec.instance.anchor
-        names = {"world", "map", local_name(anchor)}
-        return self._stated_world or local_name(self._world).casefold() in names
-
-    def _root(self) -> str:
-        """Return the frame without a parent that the frames have in common."""
-        roots: dict[str, str] = {}
-        for frame in self.of.values():
-            try:
-                roots.setdefault(root_of(frame, self._tracks), frame)
-            except Unconnected as problem:
-                self._remarks.append(str(problem))
-        if len(roots) > 1:
-            listed = ", ".join(f"'{frame}' in '{root}'" for root, frame in roots.items())
-            hint = "name the frame of the world with --world FRAME"
-            self._remarks.append(f"the frames are not connected: {listed}; {hint}")
-        return next(iter(roots), "")
 
 
 def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
@@ -189,14 +104,24 @@ def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tu
     return tuple(sorted(stamps, key=lambda stamp: stamp.time))
 
 
-def _times(used: Iterable[str], events: Iterable[EventStamp], contents: LogContents, request: LogRequest) -> FloatArray:
+def _tool(arm: LoggedArm, positions: FloatArray, base: Poses | None) -> Poses | None:
+    """Return the poses of a tool in the world at joint positions (n, joints), if the base is known."""
+    if base is None:
+        return None
+    origin, turn = base
+    place, rotation = arm.tool(positions)
+    return origin + rotated(turn, place), product(turn, rotation)
+
+
+def _times(
+    observed: Iterable[FloatArray], events: Iterable[EventStamp], contents: LogContents, request: LogRequest
+) -> FloatArray:
     """Return the times of the trace's samples, s.
 
-    These are the observations of the frames ``used``, thinned out to the largest rate, the messages on truths, the
+    These are the times ``observed`` of frames and joints, thinned out to the largest rate, the messages on truths, the
     events, and one time in each gap.
     """
-    moving = [contents.tracks[frame].times for frame in used if not contents.tracks[frame].static]
-    seen = np.unique(np.concatenate([*moving, np.empty(0)]))
+    seen = np.unique(np.concatenate([*observed, np.empty(0)]))
     slots = np.floor(seen * request.rate)
     kept = seen[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(seen) else seen
     reported = [found.times for found in contents.truths.values()]
@@ -214,7 +139,7 @@ def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
 
 
 def _grips(
-    cast: Cast, names: Sequence[str], frames: _Frames, texts: Iterable[TextStamp], times: FloatArray
+    cast: Cast, names: Sequence[str], frames: Frames, texts: Iterable[TextStamp], times: FloatArray
 ) -> dict[str, FloatArray]:
     """Return the objects that each agent holds, (n, len(names)), for the agents about which the log reports it."""
     found: dict[str, FloatArray] = {}

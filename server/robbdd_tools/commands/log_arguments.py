@@ -18,7 +18,15 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     text = "the values with which the robot executed it: 'robot=panda and target=cube1'"
     log.add_argument("--where", metavar="EXPRESSION", help=text)
     text = "the frame of an element in the log (default: the frame of its name); repeats"
-    log.add_argument("--frame", metavar="ELEMENT=FRAME", type=_frame, action="append", help=text)
+    log.add_argument("--frame", metavar="ELEMENT=FRAME", type=_pair, action="append", help=text)
+    text = "the frame of the base of an arm's model (default: the driver's usual name, or the .scenex); repeats"
+    log.add_argument("--base", metavar="AGENT=FRAME", type=_pair, action="append", help=text)
+    text = "the topic of an arm's joint states (default: by the name of the agent); repeats"
+    log.add_argument("--joints", metavar="AGENT=TOPIC", type=_pair, action="append", help=text)
+    text = "the name of a joint in the log (default: that of the model, with a prefix or suffix); repeats"
+    log.add_argument("--joint", metavar="[AGENT/]JOINT=NAME", type=_pair, action="append", help=text)
+    text = "the title of a table's column (time, frame, x, y, z, qw, qx, qy, qz, parent, event); repeats"
+    log.add_argument("--column", metavar="NAME=TITLE", type=_pair, action="append", help=text)
     log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
     text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
     log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
@@ -39,17 +47,28 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
 
     frames: dict[str, str] = dict(options.frame or ())
     errors: dict[str, float] = dict(options.uncertainty or ())
-    names = LogNames(frames, options.world or "", options.max_gap, options.rate, options.events, errors)
+    names = LogNames(
+        frames,
+        options.world or "",
+        options.max_gap,
+        options.rate,
+        options.events,
+        errors,
+        dict(options.base or ()),
+        dict(options.joints or ()),
+        dict(options.joint or ()),
+        dict(options.column or ()),
+    )
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)
     return JudgeOptions(options.run, paths, options.store, options.json, selection, names, keep=not options.no_store)
 
 
-def _frame(text: str) -> tuple[str, str]:
-    element, separator, frame = text.partition("=")
-    if not (element and separator and frame):
-        raise argparse.ArgumentTypeError(f"'{text}' must be ELEMENT=FRAME, for example cube1=camera/cube")
-    return element, frame
+def _pair(text: str) -> tuple[str, str]:
+    name, separator, value = text.partition("=")
+    if not (name and separator and value):
+        raise argparse.ArgumentTypeError(f"'{text}' must be NAME=VALUE, for example cube1=camera/cube")
+    return name, value
 
 
 def _uncertainty(text: str) -> tuple[str, float]:

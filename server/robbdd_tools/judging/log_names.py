@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeVar
 
@@ -78,13 +78,33 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
         if wanted in known:
             return wanted
         raise FramesProblem(f"the log has no frame '{wanted}' for {element}{_nearest(wanted, known)}")
-    exact = [frame for frame in known if _plain(frame) == _plain(name)]
-    found = exact or [frame for frame in known if _plain(name) in map(_plain, frame.split("/"))]
+    exact = [frame for frame in known if plain_word(frame) == plain_word(name)]
+    found = exact or [frame for frame in known if plain_word(name) in map(plain_word, frame.split("/"))]
     if len(found) == 1:
         return found[0]
     if found:
         raise FramesProblem(f"several frames fit {element}: {', '.join(found)}; choose with --frame {name}=FRAME")
     raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; name it with --frame {name}=FRAME")
+
+
+def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], stated: str) -> str:
+    """Return the frame of the base of an agent (CURIE) among the frames of a log; empty if it has none.
+
+    It is the ``stated`` one or, if that is empty, the one that ends with one of the ``usual`` names. Of several, it is
+    the one with the name of the agent. Raises ``FramesProblem``.
+    """
+    known = sorted(frames)
+    if stated:
+        if stated.lstrip("/") in known:
+            return stated.lstrip("/")
+        raise FramesProblem(f"the log has no frame '{stated}' for the base of {agent}{_nearest(stated, known)}")
+    found = [frame for frame in known if any(plain_word(frame).endswith(plain_word(name)) for name in usual)]
+    own = [frame for frame in found if plain_word(local_name(agent)) in plain_word(frame)]
+    chosen = own or found
+    if len(chosen) > 1:
+        hint = f"choose with --base {local_name(agent)}=FRAME"
+        raise FramesProblem(f"several frames may be the base of {agent}: {', '.join(chosen)}; {hint}")
+    return chosen[0] if chosen else ""
 
 
 def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list[float]:
@@ -96,7 +116,8 @@ def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list
     return [one.time for one in texts if one.text == event or inner_event(one.text.strip(), names) is not None]
 
 
-def _plain(name: str) -> str:
+def plain_word(name: str) -> str:
+    """Return a name without case and separators, to compare it with names that are written in other ways."""
     return _SEPARATORS.sub("", name).casefold()
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcap.reader import make_reader
 
 from robbdd_tools.base.files import open_regular
+from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
 
 if TYPE_CHECKING:
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
 
 TRANSFORMS, TRANSFORM, POSE = "foxglove.FrameTransforms", "foxglove.FrameTransform", "foxglove.PoseInFrame"
 LOG = "foxglove.Log"
+JOINTS = "foxglove.JointStates"
+ROS_JOINTS = ("sensor_msgs/JointState", "sensor_msgs/msg/JointState")
+"""The type of ROS, as bridges write it with JSON messages."""
 OWN_TRACE = "robbdd-trace-1"
 """Encoding of the exact trace in the traces of simulated runs."""
 
@@ -35,7 +40,7 @@ def encodings(path: Path) -> set[str]:
 
 def read_foxglove(path: Path) -> LogContents:
     """Return the contents of an MCAP file with JSON messages: transforms, poses and texts. Raises ``UnreadableLog``."""
-    builder, texts = TrackBuilder(), list[tuple[int, str, str]]()
+    builder, joints, texts = TrackBuilder(), JointBuilder(), list[tuple[int, str, str]]()
     try:
         for topic, kind, time, message in _messages(path):
             match kind:
@@ -50,21 +55,26 @@ def read_foxglove(path: Path) -> LogContents:
                     builder.add(topic.lstrip("/"), message["frame_id"], _stamp(message["timestamp"]), place, turn)
                 case "foxglove.Log":
                     texts.append((time, topic, str(message["message"])))
+                case "foxglove.JointStates":
+                    known = [one for one in message["joints"] if one.get("position") is not None]
+                    _add_joints(joints, topic, _stamp(message["timestamp"]), known)
                 case _:
-                    pass
+                    positions, efforts = message["position"], message.get("effort") or ()
+                    joints.add(topic, _header_stamp(message) or time, message["name"], positions, efforts)
     except UnreadableLog as error:
         raise UnreadableLog(f"{path}: {error}") from None
     except Exception as error:  # On damaged bytes the decoder raises exceptions of several types.
         raise UnreadableLog(f"{path} cannot be read as MCAP: {error or type(error).__name__}") from error
-    return contents_of(builder, texts)
+    return contents_of(builder, texts, joints)
 
 
-def contents_of(builder: TrackBuilder, texts: list[tuple[int, str, str]]) -> LogContents:
+def contents_of(builder: TrackBuilder, texts: list[tuple[int, str, str]], joints: JointBuilder) -> LogContents:
     """Return the contents of a log with a single clock. ``texts`` are times (ns), topics and texts."""
-    stamps = [*builder.bounds(), *(time for time, _, _ in texts)]
+    stamps = [*builder.bounds(), *joints.bounds(), *(time for time, _, _ in texts)]
     begin, end = min(stamps, default=0), max(stamps, default=0)
     found = tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in sorted(texts))
-    return LogContents(builder.tracks(begin), found, (end - begin) / 1e9)
+    tracks, remarks = builder.tracks(begin), tuple(joints.remarks)
+    return LogContents(tracks, found, (end - begin) / 1e9, remarks, joints=joints.tracks(begin))
 
 
 def _messages(path: Path) -> Iterator[tuple[str, str, int, Any]]:
@@ -74,12 +84,24 @@ def _messages(path: Path) -> Iterator[tuple[str, str, int, Any]]:
                 yield channel.topic, schema.name, message.log_time, json.loads(message.data)
 
 
-READ = {TRANSFORMS, TRANSFORM, POSE, LOG}
+READ = {TRANSFORMS, TRANSFORM, POSE, LOG, JOINTS, *ROS_JOINTS}
 
 
 def _add_transform(builder: TrackBuilder, one: Any) -> None:
     place, turn = _vector(one["translation"]), _turn(one["rotation"])
     builder.add(one["child_frame_id"], one["parent_frame_id"], _stamp(one["timestamp"]), place, turn)
+
+
+def _add_joints(joints: JointBuilder, topic: str, time: int, states: list[Any]) -> None:
+    names, positions = [str(one["name"]) for one in states], [float(one["position"]) for one in states]
+    joints.add(topic, time, names, positions, [float(one.get("effort", math.nan)) for one in states])
+
+
+def _header_stamp(message: Any) -> int:
+    """Return the stamp (ns) of a ROS message's header, whose names differ between ROS 1 and ROS 2."""
+    stamp = message["header"]["stamp"]
+    rest = next((stamp[name] for name in ("nanosec", "nsec", "nsecs") if name in stamp), 0)
+    return int(stamp.get("sec", stamp.get("secs", 0))) * 1_000_000_000 + int(rest)
 
 
 def _vector(value: Any) -> tuple[float, float, float]:

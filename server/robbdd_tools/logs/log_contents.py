@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.logs.joint_tracks import JointTrack
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -68,6 +69,7 @@ class LogContents:
     - ``tracks``: maps a frame to its poses.
     - ``texts``: the texts on all topics, in order of time.
     - ``truths``: maps a topic of truth values to them.
+    - ``joints``: maps a topic of joint states, and the name of a joint in them, to its states.
     - ``end``: the time of the last message, s since the first.
     - ``remarks``: sentences on how the log was read, for example a clock offset that was corrected.
     """
@@ -77,6 +79,7 @@ class LogContents:
     end: float = 0.0
     remarks: tuple[str, ...] = ()
     truths: Mapping[str, Truths] = field(default_factory=dict[str, Truths])
+    joints: Mapping[str, Mapping[str, JointTrack]] = field(default_factory=dict[str, Mapping[str, JointTrack]])
 
 
 @dataclass

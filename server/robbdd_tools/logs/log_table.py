@@ -1,48 +1,92 @@
-"""Read logs that are tables (CSV): one row for each pose, or for each event.
+"""Read logs that are tables (CSV): one row for each time at which something was recorded.
 
 Columns: ``time`` (s); of a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally ``qx``, ``qy``, ``qz``, ``qw`` and
-``parent``; of an event ``event``. Other columns are ignored. A row may be a pose, an event or both.
+``parent``; of an event ``event``. Every other column with numbers may be a joint (rad, or m of a sliding joint). A
+title may end with another unit in brackets: ``elbow [deg]``. A row may have several of these, or one of them.
 """
 
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.logs.foxglove_mcap import contents_of
+from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
+from robbdd_tools.logs.table_columns import POSITION, TURN, Columns, columns_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
 WORLD = "world"
-POSITION, TURN = ("x", "y", "z"), ("qw", "qx", "qy", "qz")
+DELIMITERS = (",", ";", "\t")
 
 
-def read_table(path: Path) -> LogContents:
-    """Return the contents of a CSV file. Raises ``UnreadableLog`` with the line of a cell that is not a number."""
-    builder, texts = TrackBuilder(), list[tuple[int, str, str]]()
+class Row:
+    """A row of a table. Its cells are read by the names of known columns, or by the titles of joints."""
+
+    def __init__(self, place: str, cells: Mapping[str, str | None], columns: Columns) -> None:
+        """``place`` is ``path:line``, for messages; ``cells`` maps titles to texts."""
+        self._place = place
+        self._cells = cells
+        self._columns = columns
+
+    def text(self, name: str) -> str:
+        """Return the text of a known column; empty if there is none."""
+        column = self._columns.known.get(name)
+        return "" if column is None else self._cells.get(column.title) or ""
+
+    def number(self, name: str) -> float:
+        """Return the number of a known column in the SI unit. Raises ``UnreadableLog`` for another text."""
+        cell = self.text(name)
+        try:
+            value = float(cell)
+        except ValueError:
+            shown = self._columns.known[name].title if name in self._columns.known else name
+            raise UnreadableLog(f"{self._place}: column '{shown}' must be a number, but is '{cell}'") from None
+        return value * self._columns.known[name].factor
+
+    def joints(self) -> dict[str, float]:
+        """Return the numbers of joints in the SI unit. Columns with other texts in this row are left out."""
+        found: dict[str, float] = {}
+        for name, column in self._columns.joints.items():
+            try:
+                found[name] = float(self._cells.get(column.title) or "") * column.factor
+            except ValueError:
+                continue
+        return found
+
+
+def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogContents:
+    """Return the contents of a CSV file. ``columns`` maps names of columns to titles in the file.
+
+    Raises ``UnreadableLog`` with the line of a cell that is not a number.
+    """
+    builder, joints, texts = TrackBuilder(), JointBuilder(), list[tuple[int, str, str]]()
     try:
-        for line, row in _rows(path):
-            time = round(_number(path, line, row, "time") * 1e9)
-            if row.get("event"):
-                texts.append((time, path.name, row["event"]))
-            if row.get("frame"):
-                x, y, z = (_number(path, line, row, name) for name in POSITION)
-                turned = any(row.get(name) for name in TURN)
-                w, a, b, c = (_number(path, line, row, name) for name in TURN) if turned else (1.0, 0.0, 0.0, 0.0)
-                builder.add(row["frame"], row.get("parent") or WORLD, time, (x, y, z), (w, a, b, c))
+        for row in _rows(path, columns or {}):
+            time = round(row.number("time") * 1e9)
+            if row.text("event"):
+                texts.append((time, path.name, row.text("event")))
+            if row.text("frame"):
+                x, y, z = (row.number(name) for name in POSITION)
+                turned = any(row.text(name) for name in TURN)
+                w, a, b, c = (row.number(name) for name in TURN) if turned else (1.0, 0.0, 0.0, 0.0)
+                builder.add(row.text("frame"), row.text("parent") or WORLD, time, (x, y, z), (w, a, b, c))
+            known = row.joints()
+            joints.add(path.name, time, list(known), list(known.values()))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UnreadableLog(f"{path} cannot be read as a table: {error}") from error
-    return contents_of(builder, texts)
+    return contents_of(builder, texts, joints)
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:
     """Return the events of a CSV file whose times count from the begin of a log, in s. Raises ``UnreadableLog``."""
     try:
-        rows = [(_number(path, line, row, "time"), row["event"]) for line, row in _rows(path) if row.get("event")]
+        rows = [(row.number("time"), row.text("event")) for row in _rows(path, {}) if row.text("event")]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UnreadableLog(f"{path} cannot be read as a table: {error}") from error
     if not rows:
@@ -50,19 +94,15 @@ def read_events(path: Path) -> tuple[TextStamp, ...]:
     return tuple(TextStamp(path.name, name, time) for time, name in sorted(rows))
 
 
-def _rows(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
+def _rows(path: Path, stated: Mapping[str, str]) -> Iterator[Row]:
     with open_regular(path) as file:
         lines = (line.decode("utf-8-sig" if number == 0 else "utf-8") for number, line in enumerate(file))
-        table = csv.DictReader(lines, skipinitialspace=True)
-        if "time" not in (table.fieldnames or ()):
-            raise UnreadableLog(f"{path}:1: there is no column 'time': name the columns in the first line")
+        first = next(lines, "")
+        # Some recorders separate columns by spaces.
+        delimiter = next((one for one in DELIMITERS if one in first), " " if len(first.split()) > 1 else ",")
+        head = csv.DictReader([first], delimiter=delimiter, skipinitialspace=True).fieldnames or ()
+        titles = [title.strip() for title in head]
+        columns = columns_of(f"{path}:1", titles, stated)
+        table = csv.DictReader(lines, titles, delimiter=delimiter, skipinitialspace=True)
         for row in table:
-            yield table.line_num, row
-
-
-def _number(path: Path, line: int, row: Mapping[str, str], column: str) -> float:
-    cell = row.get(column)
-    try:
-        return float(cell or "")
-    except ValueError:
-        raise UnreadableLog(f"{path}:{line}: column '{column}' must be a number, but is '{cell or ''}'") from None
+            yield Row(f"{path}:{table.line_num + 1}", row, columns)

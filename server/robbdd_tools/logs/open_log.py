@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from robbdd_tools.logs.foxglove_mcap import encodings, read_foxglove
@@ -18,13 +19,16 @@ def is_log(path: Path) -> bool:
     return (path / METADATA).is_file() or (path.suffix.lower() in SUFFIXES and path.is_file())
 
 
-def read_log(path: Path) -> LogContents:
-    """Return the contents of a log. Raises ``UnreadableLog``."""
+def read_log(path: Path, columns: Mapping[str, str] | None = None) -> LogContents:
+    """Return the contents of a log. ``columns`` maps names of a table's columns to titles in the file.
+
+    Raises ``UnreadableLog``.
+    """
     if path.is_dir():
         return _checked(path, read_ros_bag(path))
     match path.suffix.lower():
         case ".csv":
-            found = read_table(path)
+            found = read_table(path, columns)
         case ".mcap" if "json" in encodings(path):
             found = read_foxglove(path)
         case ".bag" | ".db3" | ".mcap":
@@ -35,8 +39,8 @@ def read_log(path: Path) -> LogContents:
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:
-    if not (found.tracks or found.texts or found.truths):
+    if not (found.tracks or found.texts or found.truths or found.joints):
         raise UnreadableLog(
-            f"{path} contains no message that can be judged: record transforms, poses, odometry or texts of events"
+            f"{path} contains no message that can be judged: record transforms, poses, joint states or texts of events"
         )
     return found

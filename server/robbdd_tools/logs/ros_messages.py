@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from robbdd_tools.logs.action_goals import ROS1_STATES, ROS2_STATES, ActionGoals, GoalState
+from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, Truths
 from robbdd_tools.logs.pose_lists import PoseLists
 
@@ -32,6 +33,8 @@ class RosContents:
         self.remarks: list[str] = []
         self._received = TrackBuilder()
         """Poses without headers, by the time of reception."""
+        self.joints = JointBuilder()
+        self._received_joints = JointBuilder()
 
     def transforms(self, topic: str, received: int, message: Any) -> None:
         """Take the transforms of ``TFMessage``; those of ``/tf_static`` hold at all times."""
@@ -111,6 +114,14 @@ class RosContents:
         known = {int(value.TRUE): 1.0, int(value.FALSE): -1.0}
         self.truths.setdefault(topic, []).append((received, known.get(int(value.value), math.nan)))
 
+    def joint_states(self, topic: str, received: int, message: Any) -> None:
+        """Take the states of joints. Their time is that of reception if the header has none."""
+        stamp = _stamp(message.header.stamp)
+        if stamp:
+            self.offsets.append(received - stamp)
+        builder = self.joints if stamp else self._received_joints
+        builder.add(topic, stamp or received, message.name, message.position, message.effort)
+
     def goal_states(self, topic: str, received: int, message: Any) -> None:
         """Take the states of an action's goals."""
         found: list[tuple[str, int, GoalState]] = []
@@ -130,6 +141,7 @@ class RosContents:
         texts = sorted((received - shift, topic, text) for received, topic, text in (*self.texts, *self.goals.texts))
         truths = {topic: sorted((time - shift, one) for time, one in found) for topic, found in self.truths.items()}
         stamps = [*self.builder.bounds(), *(time - shift for time in self._received.bounds())]
+        stamps += [*self.joints.bounds(), *(time - shift for time in self._received_joints.bounds())]
         stamps += [time for time, _, _ in texts]
         stamps += [time for found in truths.values() for time, _ in found]
         begin, end = min(stamps, default=0), max(stamps, default=0)
@@ -138,8 +150,9 @@ class RosContents:
             {frame: track for frame, track in tracks.items() if not self.lists.ambiguous(frame)},
             tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in texts),
             (end - begin) / 1e9,
-            (*self.remarks, *self.lists.remarks(), *self.goals.remarks),
+            (*self.remarks, *self.lists.remarks(), *self.goals.remarks, *self.joints.remarks),
             {topic: _truths(found, begin) for topic, found in truths.items()},
+            self.joints.tracks(begin) | self._received_joints.tracks(begin + shift),
         )
 
     def _shift(self) -> int:
@@ -169,6 +182,7 @@ READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
     "gazebo_msgs/msg/LinkStates": RosContents.states,
     "vision_msgs/msg/Detection3D": RosContents.detection,
     "vision_msgs/msg/Detection3DArray": RosContents.detections,
+    "sensor_msgs/msg/JointState": RosContents.joint_states,
     "std_msgs/msg/String": RosContents.text,
     "std_msgs/msg/Bool": RosContents.truth,
     "bdd_ros2_interfaces/msg/Trinary": RosContents.trinary,

@@ -115,12 +115,13 @@ class WindowEvidence:
         Only the trace of a log can lack values. A comparison with a missing value would be false without a word.
         """
         if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
-            raise Unobserved(f"{name} was not observed {self._gap(name, float(times[int(np.argmax(missing))]))}")
+            unseen = np.isnan(self.trace.positions[:, self.trace.column(name), 0])
+            raise Unobserved(f"{name} was not observed {self._gap(unseen, float(times[int(np.argmax(missing))]))}")
         return values
 
-    def _gap(self, name: str, time: float) -> str:
-        """Return the gap in the observations of an element that contains a time (s), in words."""
-        known = self.trace.times[~np.isnan(self.trace.positions[:, self.trace.column(name)]).any(axis=1)]
+    def _gap(self, unseen: NDArray[np.bool_], time: float) -> str:
+        """Return the gap in observations that contains a time (s), in words. ``unseen`` (samples of the trace,)."""
+        known = self.trace.times[~unseen]
         before, after = known[known < time], known[known > time]
         if before.size and after.size:
             return f"between {before[-1]:.2f} s and {after[0]:.2f} s"
@@ -163,10 +164,18 @@ class WindowEvidence:
         return known[self._rows]
 
     def joint_clearance(self, agent: str) -> FloatArray:
-        """Return the smallest share of a joint's range to its nearest limit, shape (n,). Raises ``KeyError``."""
+        """Return the smallest share of a joint's range to its nearest limit, shape (n,).
+
+        Raises ``KeyError``, and ``Unobserved`` if a joint was not observed throughout the window.
+        """
         if agent not in self.trace.joint_clearances:
             raise KeyError(f"joint limits of {agent}")
-        return self.trace.joint_clearances[agent][self._rows]
+        every = self.trace.joint_clearances[agent]
+        shares = every[self._rows]
+        if self.trace.log and (missing := np.isnan(shares)).any():
+            gap = self._gap(np.isnan(every), float(self.times[int(np.argmax(missing))]))
+            raise Unobserved(f"the joints of {agent} were not observed {gap}")
+        return shares
 
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""

@@ -20,6 +20,10 @@ class LogRequest:
     - ``rate``: the largest number of samples of the trace per second.
     - ``uncertainty``: the largest error of the position of an element (local name or CURIE) or of ``OTHERS``, in m; of
       ``angle``, in rad; of ``speed``, in m/s.
+    - ``bases``: maps an agent (local name or CURIE) to the frame of the base of its model.
+    - ``joint_topics``: maps an agent to the topic of the states of its joints.
+    - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
+    - ``columns``: maps the name of a column of a table to its title in the file.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -30,3 +34,7 @@ class LogRequest:
     rate: float = 200.0
     annotations: str = ""
     uncertainty: Mapping[str, float] = field(default_factory=dict[str, float])
+    bases: Mapping[str, str] = field(default_factory=dict[str, str])
+    joint_topics: Mapping[str, str] = field(default_factory=dict[str, str])
+    joints: Mapping[str, str] = field(default_factory=dict[str, str])
+    columns: Mapping[str, str] = field(default_factory=dict[str, str])

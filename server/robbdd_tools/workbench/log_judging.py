@@ -49,6 +49,10 @@ class LogNames:
     rate: float = 200.0
     annotations: Path | None = None
     uncertainty: Mapping[str, float] = field(default_factory=dict[str, float])
+    bases: Mapping[str, str] = field(default_factory=dict[str, str])
+    joint_topics: Mapping[str, str] = field(default_factory=dict[str, str])
+    joints: Mapping[str, str] = field(default_factory=dict[str, str])
+    columns: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +78,10 @@ def judge_log(
     rate: float = 200.0,
     events: str | os.PathLike[str] | None = None,
     uncertainty: Sequence[str] = (),
+    bases: Mapping[str, str] | None = None,
+    joint_topics: Mapping[str, str] | None = None,
+    joints: Mapping[str, str] | None = None,
+    columns: Mapping[str, str] | None = None,
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -88,13 +96,28 @@ def judge_log(
       the log) and ``event``.
     - ``uncertainty``: the largest errors of the measurements: ``("3 mm", "cube0=5 mm", "2 deg", "0.05 m/s")``. Where
       they could change a verdict, it is *unknown*.
+    - ``bases``: maps an agent to the frame of the base of its model, from which its joints give the tool's poses.
+    - ``joint_topics``: maps an agent to the topic of its joint states.
+    - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
+    - ``columns``: maps the name of a column of a table (``time``, ``frame``, ``x`` …) to its title in the file.
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
     Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
     ``UserCodeRefused`` and ``OSError``.
     """
     errors = dict(read_uncertainty(one) for one in uncertainty)
-    names = LogNames(dict(frames or {}), world, max_gap, rate, None if events is None else Path(events), errors)
+    names = LogNames(
+        dict(frames or {}),
+        world,
+        max_gap,
+        rate,
+        None if events is None else Path(events),
+        errors,
+        dict(bases or {}),
+        dict(joint_topics or {}),
+        dict(joints or {}),
+        dict(columns or {}),
+    )
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
             pass
@@ -135,6 +158,10 @@ class LogJudgement:
             names.rate,
             annotations,
             dict(names.uncertainty),
+            dict(names.bases),
+            dict(names.joint_topics),
+            dict(names.joints),
+            dict(names.columns),
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)

@@ -50,7 +50,8 @@ class Unreachable(BehaviourError):
 class Arm:
     """An arm by itself; tool poses are in the frame of its base.
 
-    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the preferred posture, all in rad.
+    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the preferred posture, all in rad. ``limited`` says
+    which joints have limits, ``turning`` which ones are not sliding.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -61,6 +62,8 @@ class Arm:
         self._places = np.array([joint.qposadr[0] for joint in joints])
         self._speeds = np.array([joint.dofadr[0] for joint in joints])
         limited = [bool(self._model.jnt_limited[joint.id]) for joint in joints]
+        self.limited = tuple(limited)
+        self.turning = tuple(self._model.jnt_type[joint.id] == int(mujoco.mjtJoint.mjJNT_HINGE) for joint in joints)
         self.lower: FloatArray = np.array(
             [j.range[0] if has else -TURNS for j, has in zip(joints, limited, strict=True)]
         )

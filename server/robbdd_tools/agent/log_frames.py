@@ -1,0 +1,227 @@
+"""The frames of a scenario's elements in a log, and their poses in the world."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.catalog.base_frames import BASE_FRAMES
+from robbdd_tools.judging.log_names import (
+    FramesProblem,
+    base_frame_of,
+    elements_of,
+    frame_of,
+    local_name,
+    stated_frames,
+)
+from robbdd_tools.logs.log_contents import Track
+from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of, rotated
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.staging import Staging
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.logs.log_contents import LogContents
+    from robbdd_tools.protocol.log_request import LogRequest
+    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.world.pose import Pose
+    from robbdd_tools.world.scene import Cast
+
+Poses = tuple["FloatArray", "FloatArray"]
+"""Positions (n, 3) m in the frame of the world and orientations (n, 4), w first; NaN where unobserved."""
+NAME_WORLD = "name the frame of the world with --world FRAME"
+WORLD = "world"
+
+
+class Frames:
+    """The frames of a scenario's elements in a log, and their poses. ``remarks`` gets sentences on what is missing.
+
+    ``jointed`` are the agents whose joints the log reports: the tools of those without a frame follow from them.
+    """
+
+    def __init__(
+        self,
+        spec: ScenarioSpec,
+        cast: Cast,
+        contents: LogContents,
+        request: LogRequest,
+        remarks: list[str],
+        jointed: Collection[str],
+    ) -> None:
+        self._spec = spec
+        self._cast = cast
+        self._tracks = dict(contents.tracks)
+        self._max_gap = request.max_gap
+        self._remarks = remarks
+        self.of: dict[str, str] = {}
+        """Element → its frame."""
+        stated = {**stated_frames(spec), **elements_of(request.frames, (*cast.objects, *cast.agents))}
+        problems: dict[str, str] = {}
+        for element in (*cast.objects, *cast.agents):
+            try:
+                self.of[element] = frame_of(element, contents.tracks, stated)
+            except FramesProblem as problem:
+                problems[element] = str(problem)
+        asked = {agent for agent in jointed if agent not in self.of}
+        self._bases = self._base_frames(elements_of(request.bases, cast.agents), asked)
+        for element, problem in problems.items():
+            used = element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused
+            if used and (element not in jointed or element in stated):
+                remarks.append(problem)
+        self._stated_world = bool(request.world)
+        self._world = request.world.lstrip("/") or self._root()
+        self._anchor()
+
+    def observed(self) -> list[FloatArray]:
+        """Return the times (s) of the moving frames of elements and bases, and of those up to their roots."""
+        found: set[str] = set()
+        for frame in (*self.of.values(), *self._bases.values()):
+            while frame in self._tracks and frame not in found:
+                found.add(frame)
+                frame = self._tracks[frame].parent
+        return [track.times for frame in sorted(found) if not (track := self._tracks[frame]).static]
+
+    def poses(self, element: str, times: FloatArray) -> Poses | None:
+        """Return the poses of an element's frame at some times (n,) s; ``None`` if it has none."""
+        return self._poses(self.of[element], times) if element in self.of else None
+
+    def base_poses(self, agent: str, times: FloatArray) -> Poses | None:
+        """Return the poses of an agent's base: of its frame in the log, or else of the ``.scenex``; ``None`` without.
+
+        A remark says which one was used.
+        """
+        frame = self._bases.get(agent)
+        if frame is not None and (found := self._poses(frame, times)) is not None:
+            self._remarks.append(f"the base of {agent} is the frame '{frame}'")
+            return found
+        pose = self._stated_pose(agent, self._base)
+        hint = f"name the frame of its base with --base {local_name(agent)}=FRAME"
+        if pose is None:
+            self._remarks.append(f"the log and the .scenex do not say where the base of {agent} is: {hint}")
+            return None
+        if not self._is_world():
+            self._remarks.append(f"the .scenex places the base of {agent} in the world: {NAME_WORLD}, or {hint}")
+            return None
+        self._remarks.append(f"the base of {agent} is where the .scenex places it")
+        return _fixed(pose, len(times))
+
+    def object_poses(self, element: str, times: FloatArray) -> Poses | None:
+        """Return the poses of an object's centre: in the log or, if it is not there, in the ``.scenex``."""
+        if element in self.of:
+            found = self.poses(element, times)
+            if found is None:
+                return None
+            place, turn = found
+            return place - rotated(turn, np.tile(self._cast.objects[element].frame, (len(times), 1))), turn
+        pose = self._stated_pose(element, lambda cast, name: cast.pose(name))
+        if pose is None:
+            return None
+        if not self._is_world():
+            self._remarks.append(f"{element} is not in the log, and the .scenex places it in the world: {NAME_WORLD}")
+            return None
+        self._remarks.append(f"{element} is not in the log, so it stands where the .scenex places it")
+        return _fixed(pose, len(times))
+
+    def _poses(self, frame: str, times: FloatArray) -> Poses | None:
+        try:
+            return poses_at(frame, self._world, self._tracks, times, self._max_gap)
+        except Unconnected as problem:
+            self._remarks.append(str(problem))
+            return None
+
+    def _base_frames(self, stated: Mapping[str, str], asked: Collection[str]) -> dict[str, str]:
+        """Return the frames of the bases: the stated ones, and those with the names that drivers of an arm use.
+
+        A remark names each one of ``asked`` that cannot be found.
+        """
+        frames = {*self._tracks, *(track.parent for track in self._tracks.values())}
+        found: dict[str, str] = {}
+        for agent, robot in self._cast.agents.items():
+            try:
+                frame = base_frame_of(agent, frames, BASE_FRAMES.get(robot.name, ()), stated.get(agent, ""))
+            except FramesProblem as problem:
+                self._remarks += [str(problem)] if agent in (*asked, *stated) else []
+                continue
+            if frame:
+                found[agent] = frame
+        return found
+
+    def _base(self, cast: Cast, agent: str) -> Pose | None:
+        try:
+            return cast.base(agent)
+        except SceneError as error:
+            self._remarks.append(str(error))
+            return None
+
+    def _stated_pose(self, element: str, pose_of: Callable[[Cast, str], Pose | None]) -> Pose | None:
+        """Return the pose of an element that the ``.scenex`` states; ``None`` if it states none, or draws it."""
+        if self._spec.instance is None:
+            return None
+        # A pose that is drawn at random differs with another seed.
+        other = replace(self._cast, staging=Staging(self._spec.instance, self._spec.seed + 1))
+        pose = pose_of(self._cast, element)
+        return pose if pose == pose_of(other, element) else None
+
+    def _is_world(self) -> bool:
+        """Return whether the frame in which poses are given is that of the ``.scenex``: by its name, or by the user.
+
+        Without any frame in the log, it is.
+        """
+        anchor = "" if self._spec.instance is None else self._spec.instance.anchor
+        names = {WORLD, "map", local_name(anchor)}
+        return self._stated_world or not self._world or local_name(self._world).casefold() in names
+
+    def _root(self) -> str:
+        """Return the frame without a parent that the frames have in common: of elements or, without any, of bases."""
+        roots: dict[str, str] = {}
+        for frame in self.of.values() or self._bases.values():
+            try:
+                roots.setdefault(root_of(frame, self._tracks), frame)
+            except Unconnected as problem:
+                self._remarks.append(str(problem))
+        if len(roots) > 1:
+            listed = ", ".join(f"'{frame}' in '{root}'" for root, frame in roots.items())
+            self._remarks.append(f"the frames are not connected: {listed}; {NAME_WORLD}")
+        return next(iter(roots), "")
+
+    def _anchor(self) -> None:
+        """Place a log without a frame of the world in that of the ``.scenex``, by the base of an arm."""
+        if self._is_world() or self._world in self._tracks:
+            return
+        for agent, frame in self._bases.items():
+            pose = self._stated_pose(agent, self._base)
+            if pose is None or not self._is_fixed(frame):
+                continue
+            place, turn = poses_at(self._world, frame, self._tracks, np.zeros(1), self._max_gap)
+            origin, base = _fixed(pose, 1)
+            self._tracks[self._world] = Track(
+                WORLD, np.zeros(1), origin + rotated(base, place), product(base, turn), static=True
+            )
+            self._world = WORLD
+            words = f"'{frame}' is the base of {agent}, which stands where the .scenex places it"
+            self._remarks.append(f"the log has no frame of the world: {words}")
+            return
+
+    def _is_fixed(self, frame: str) -> bool:
+        """Return whether a frame never moves relative to the root of the frames."""
+        try:
+            if root_of(frame, self._tracks) != self._world:
+                return False
+        except Unconnected:
+            return False
+        while frame in self._tracks:
+            if not self._tracks[frame].static:
+                return False
+            frame = self._tracks[frame].parent
+        return True
+
+
+def _fixed(pose: Pose, count: int) -> Poses:
+    """Return a pose of the ``.scenex`` for ``count`` times."""
+    upright = (float(np.cos(pose.yaw / 2)), 0.0, 0.0, float(np.sin(pose.yaw / 2)))
+    return np.tile(pose.position, (count, 1)), np.tile(pose.rotation or upright, (count, 1))

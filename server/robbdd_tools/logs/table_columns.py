@@ -1,0 +1,76 @@
+"""The columns of a table: which ones are known, and in which unit their numbers are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from robbdd_tools.base.quantity_units import UNITS, si_factor
+from robbdd_tools.logs.log_contents import UnreadableLog
+
+POSITION, TURN = ("x", "y", "z"), ("qw", "qx", "qy", "qz")
+DIMENSIONS = {
+    "time": "time",
+    **dict.fromkeys(("frame", *TURN, "parent", "event"), ""),
+    **dict.fromkeys(POSITION, "length"),
+}
+"""Known columns → what their numbers measure; empty for texts and numbers without a unit."""
+OF_JOINTS = ("angle", "length")
+_WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table: its title in the file, and its unit, which is the SI unit if it is empty."""
+
+    title: str
+    unit: str = ""
+
+    @property
+    def factor(self) -> float:
+        """The size of the unit in the SI unit."""
+        return si_factor(self.unit)
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """The ``known`` columns of a table by their names, and those that may be of ``joints`` by titles without units."""
+
+    known: Mapping[str, Column]
+    joints: Mapping[str, Column]
+
+
+def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> Columns:
+    """Return the columns of a table.
+
+    A title may have a unit in brackets (``elbow [deg]``). ``stated`` maps names of known columns to titles, with or
+    without the unit. ``place`` is that of the first line, for messages. Raises ``UnreadableLog`` for a name or a title
+    that does not exist, and for a unit of a known column that measures something else.
+    """
+    every = dict(map(_split, titles))
+    known = {name: every[name] for name in DIMENSIONS if name in every}
+    for name, title in stated.items():
+        if name not in DIMENSIONS:
+            raise UnreadableLog(f"'{name}' is no column of a table: name one of {', '.join(DIMENSIONS)}")
+        if (bare := _split(title)[0]) not in every:
+            raise UnreadableLog(f"{place}: there is no column '{title}'; it has: {', '.join(every)}")
+        known[name] = every[bare]
+    if "time" not in known:
+        words = "there is no column 'time': name the columns in the first line, or say --column time=COLUMN"
+        raise UnreadableLog(f"{place}: {words}; it has: {', '.join(every)}")
+    for name, column in known.items():
+        if column.unit and (column.unit not in UNITS or UNITS[column.unit][0] != DIMENSIONS[name]):
+            raise UnreadableLog(f"{place}: '{column.unit}' is no unit of column '{name}'")
+    used = {column.title for column in known.values()}
+    joints = {name: column for name, column in every.items() if column.title not in used and _is_of_joint(column)}
+    return Columns(known, joints)
+
+
+def _is_of_joint(column: Column) -> bool:
+    return not column.unit or (column.unit in UNITS and UNITS[column.unit][0] in OF_JOINTS)
+
+
+def _split(title: str) -> tuple[str, Column]:
+    match = _WITH_UNIT.fullmatch(title)
+    return (match["name"], Column(title, match["unit"])) if match else (title, Column(title))
