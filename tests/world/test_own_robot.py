@@ -45,7 +45,7 @@ def test_an_arm_from_an_mjcf_file_picks_and_places(tmp_path: Path, seed: int) ->
 
 @pytest.mark.physics
 def test_an_arm_from_a_urdf_file_gets_servos_and_picks_and_places(tmp_path: Path) -> None:
-    arm = replace(ARM, actuator="left_slide", pads=("left", "right"))
+    arm = replace(ARM, actuator="left_slide", closed=0.0, pads=("left", "right"))
     model = replace(source(arm, "five.urdf"), format="urdf")
     run = Execution(spec(tmp_path, model, text=URDF), [pick_place(CUBE, BIN_WS, FIVE)])
     assert run.run_behaviour(0), run.trace.remark
