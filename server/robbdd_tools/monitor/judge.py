@@ -115,7 +115,7 @@ class WindowEvidence:
         Only the trace of a log can lack values. A comparison with a missing value would be false without a word.
         """
         if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
-            unseen = np.isnan(self.trace.positions[:, self.trace.column(name)]).any(axis=1)
+            unseen = np.isnan(self.trace.positions[:, self.trace.column(name)].sum(axis=1))
             raise Unobserved(f"{name} was not observed {self._gap(unseen, float(times[int(np.argmax(missing))]))}")
         return values
 
