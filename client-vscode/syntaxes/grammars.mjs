@@ -49,7 +49,13 @@ const common = grammar("RobBDD common ground", "source.robbdd.common", [
   { match: String.raw`${NUMBER}(?![\p{L}\p{N}_])`, captures: { 1: { name: "constant.numeric.robbdd" } } },
 ]);
 
+const quantity = {
+  match: String.raw`${NUMBER}\s*(m/s|deg/s|deg|rad|mm|cm|ms|kg|g|m|s|N|%)(?![\p{L}\p{N}_/-])`,
+  captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
+};
+
 const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
+  quantity,
   COMMON,
   declaration(DECLARE, "entity.name.type.set", "similar obj set", "similar agn set", "obj set", "ws set", "agn set"),
   declaration(DECLARE, "entity.name.type.scene", "scene"),
@@ -57,6 +63,8 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   declaration(DECLARE, "variable.other.constant", "object", "workspace", "agent"),
   property(PROPERTY, "variable.other.constant", "base name"),
   labels(PROPERTY, "base name", "count", "correct for"),
+  { match: `${NAME}(?=\\s*:)`, name: `${PROPERTY}.robbdd` },
+  phrases("constant.language", "true", "false"),
   // What stays of a declaration that is still being typed, and links to sets and compositions.
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
   phrases(DECLARE, "object", "workspace", "agent"),
@@ -88,11 +96,6 @@ const predicates = phrases(
   "keeps its joints",
   "from their limits",
 );
-
-const quantity = {
-  match: String.raw`${NUMBER}\s*(m/s|deg/s|deg|rad|mm|cm|ms|kg|m|s|N|%)(?![\p{L}\p{N}_/-])`,
-  captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
-};
 
 // The last word of the phrase is behind a quantity, a variable or an element.
 const distance = {

@@ -141,6 +141,10 @@ BROKEN: dict[str, list[str]] = {
         "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("comp (ns=env) tray", "comp tray"),
         "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("obj set (ns=env)", "obj set"),
     ],
+    "property-value": [
+        "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red  size: 3  colour: blue, red }"),
+        "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red colour: red size: 3 }"),
+    ],
     "published-form": [SCENE_IMPORT + PUBLISHED, _declared("Event spare\n")],
     "repeated-value": [
         story(LINES + "                var <fetch.part>: { <parts.bolt> }\n"),

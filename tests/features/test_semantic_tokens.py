@@ -119,7 +119,15 @@ def test_tokens_stand_in_order_apart_and_within_their_lines(path: Path, cut: int
 
 
 def test_every_concept_has_an_appearance_that_every_theme_knows() -> None:
-    constants = {feature.COMMENT, feature.STRING, feature.NUMBER, feature.KEYWORD, feature.TIME, feature.CODE}
+    constants = {
+        feature.COMMENT,
+        feature.STRING,
+        feature.NUMBER,
+        feature.KEYWORD,
+        feature.TIME,
+        feature.CODE,
+        feature.PROPERTY,
+    }
     assert set(APPEARANCES) == {*SymbolKind, *constants, feature.PREDICATE, feature.ACTION, feature.ARGUMENT}
     assert len(LEGEND.token_modifiers) < 32
 

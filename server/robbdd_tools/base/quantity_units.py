@@ -16,6 +16,7 @@ UNITS = {
     "deg": ("angle", pi / 180),
     "N": ("force", 1.0),
     "kg": ("mass", 1.0),
+    "g": ("mass", 0.001),
     "m/s": ("speed", 1.0),
     "deg/s": ("angular speed", pi / 180),
     "%": ("ratio", 0.01),
@@ -53,8 +54,13 @@ def si_factor(unit: str) -> float:
 
 def is_quantity(text: str) -> bool:
     """Return whether a text is a number with a unit of ``UNITS``."""
+    return split_quantity(text) is not None
+
+
+def split_quantity(text: str) -> tuple[str, str] | None:
+    """Return the number and the unit of a quantity as they are written; ``None`` for any other text."""
     match = _QUANTITY.fullmatch(text)
-    return match is not None and match[2] in UNITS
+    return (match[1], match[2]) if match is not None and match[2] in UNITS else None
 
 
 def units_of(dimension: str) -> tuple[str, ...]:

@@ -40,6 +40,7 @@ from robbdd_tools.checks.not_in_scene import not_in_scene
 from robbdd_tools.checks.not_simulated import not_simulated
 from robbdd_tools.checks.number_range import number_range
 from robbdd_tools.checks.pose import pose
+from robbdd_tools.checks.property_value import property_value
 from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.python_source import python_source
 from robbdd_tools.checks.quantity import quantity
@@ -75,6 +76,7 @@ DECLARATION_RULES = (
     not_in_scene,
     number_range,
     pose,
+    property_value,
     quantity,
     repeated_value,
     row_width,

@@ -27,6 +27,7 @@ Rule = Callable[[Site], "Iterator[Diagnostic]"]
 CACHED_FILES = 256
 _RULED = (
     tree.ElementSet,
+    tree.SimilarSet,
     tree.ConstantSet,
     tree.Template,
     tree.Story,

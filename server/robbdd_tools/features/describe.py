@@ -13,6 +13,7 @@ from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, execution_rate, pass_rate, substitutions
+from robbdd_tools.features.element_properties import describe_properties
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.imported_statements import describe_graph, describe_statements
 from robbdd_tools.features.markdown import code, code_block, literal
@@ -87,6 +88,7 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
     parts = [_title(snapshot, definition), *_comment(site, definition)]
     if site is not None:
         parts += _contents(site, definition)
+        parts += describe_properties(site, definition)
     parts += describe_statements(snapshot, definition)
     parts += _results(snapshot, definition, findings)
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:

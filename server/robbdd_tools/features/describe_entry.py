@@ -10,6 +10,7 @@ from robbdd_tools.base.quantity_units import UNITS
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.describe import describe_import, describe_path, describe_words
+from robbdd_tools.features.element_properties import describe_property
 from robbdd_tools.features.literals import LITERAL_FORMS
 from robbdd_tools.features.markdown import code, code_block
 from robbdd_tools.features.model_parts_help import describe_file
@@ -44,6 +45,8 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
             return (
                 None if setting is None else f"`{path}` of {setting.target}: {setting.doc}\n\nIt is {setting.wanted}."
             )
+        case "property":
+            return describe_property(snapshot, uri, path)
         case "catalog":
             return describe_catalog_entry(path)
         case "folder":

@@ -10,6 +10,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import describe, describe_import, result_words
+from robbdd_tools.features.element_properties import describe_property
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.outside_names import outside_name_at
 from robbdd_tools.features.policy_results import policy_hints
@@ -80,6 +81,9 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
                 return Hover(word_meaning(word_of(node)), span)
             if isinstance(node, tree.During | tree.Before | tree.After):
                 return Hover(time_meaning(node), span)
+            if isinstance(node, tree.Property) and node.name.span.shifted(placed.offset).contains(offset):
+                found = describe_property(snapshot, uri, node.name.text)
+                return None if found is None else Hover(found, node.name.span.shifted(placed.offset))
             if isinstance(node, tree.Emission):
                 return Hover(emission_meaning(node), span)
     return None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
+from robbdd_tools.features.element_properties import name_choices, value_choices
 from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
 from robbdd_tools.features.unimported import Elsewhere, beside, loaded
@@ -51,8 +52,8 @@ _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet
 class Completion:
     """One completion proposal.
 
-    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, one of ``CODE_KINDS``, or the
-      kind of a symbol.
+    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, ``property``, one of
+      ``CODE_KINDS``, or the kind of a symbol.
     - ``text``: the text to insert. The text of a snippet contains placeholders.
     - ``span``: the text that ``text`` replaces.
     - ``whole``: like ``span``, but including the rest of the word after the cursor.
@@ -86,6 +87,10 @@ class Names:
         """Yield the names that the grammar accepts at a place."""
         if place.expected is None:
             return
+        if "PropertyNameText" in place.expected.rules:
+            yield from self.properties()
+        if "WordText" in place.expected.rules:
+            yield from self.property_values()
         if "NameText" in place.expected.rules:
             yield from self.settings()
             yield from self.moments()
@@ -130,6 +135,17 @@ class Names:
         visible = scope.visible(ROLE_KINDS["Variable"], self.cursor.scopes)
         kinds = variable_type(self.snapshot, scope.define(*visible[name])).kinds if name in visible else ANYTHING
         return kinds or ANYTHING
+
+    def properties(self) -> Iterator[Completion]:
+        """Yield the properties that elements of the model have."""
+        uri = self.file.document.uri
+        for name, values in name_choices(self.snapshot, uri, self.cursor):
+            yield Completion(name, "property", values, f"{name}: ", self.cursor.span, self.whole, origin=(uri, name))
+
+    def property_values(self) -> Iterator[Completion]:
+        """Yield the values that the property at the cursor has elsewhere in the model."""
+        for value in value_choices(self.snapshot, self.file.document.uri, self.cursor):
+            yield Completion(value, "value", "", value, self.cursor.span, self.whole)
 
     def settings(self) -> Iterator[Completion]:
         """Yield the configurations that ``has config`` can set."""

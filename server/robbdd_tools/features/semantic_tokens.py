@@ -34,6 +34,7 @@ CACHED_COMMENTS = 200
 NAME = "name"
 """A used name; only its definition determines its concept, so no final token has this one."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
+PROPERTY = "property"
 _WORDS = re.compile(
     r"(?P<comment>//[^\n]*)"
     r"|(?P<string>\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|[\"'][^\n]*)"
@@ -266,13 +267,17 @@ def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
             yield symbol.span.start, Token(symbol.span, symbol.kind, is_declaration=True)
 
 
-def _names(node: tree.Node) -> Iterator[tuple[tree.Name, str]]:
-    """Yield the names in a node that neither declare nor refer to anything in the model."""
+def _names(node: tree.Node) -> Iterator[tuple[tree.Node, str]]:
+    """Yield the words in a node that neither declare nor refer to anything in the model."""
     match node:
         case tree.PhraseUse():
             yield from ((value, ARGUMENT) for _, value in node.arguments if isinstance(value, tree.Name))
         case tree.TextArgument():
             yield node.name, ARGUMENT
+        case tree.Property():
+            yield node.name, PROPERTY
+            yield from ((value, STRING) for value in node.values if isinstance(value, tree.Text))
+            yield from ((value, KEYWORD) for value in node.values if isinstance(value, tree.Truth))
         case tree.PythonAttribute():
             yield node.module, CODE
             yield node.attribute, CODE

@@ -31,6 +31,7 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "folder": _KINDS.Folder,
     "catalog": _KINDS.Value,
     "setting": _KINDS.Property,
+    "property": _KINDS.Property,
     "unit": _KINDS.Unit,
     "class": _KINDS.Class,
     "function": _KINDS.Function,

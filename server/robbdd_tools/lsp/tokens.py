@@ -31,6 +31,7 @@ APPEARANCES: Mapping[str, tuple[str, ...]] = {
     feature.ACTION: (_TYPES.Method.value, "behaviour", "defaultLibrary"),
     feature.ARGUMENT: (_TYPES.Parameter.value,),
     feature.CODE: (_TYPES.Macro.value,),
+    feature.PROPERTY: (_TYPES.Property.value,),
     SymbolKind.NAMESPACE: (_TYPES.Namespace.value,),
     SymbolKind.STORY: (_TYPES.Class.value, "story"),
     SymbolKind.TEMPLATE: (_TYPES.Class.value, "template"),

@@ -46,6 +46,13 @@ class Quantity(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Truth(Node):
+    """``true`` or ``false``."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Number(Node):
     """A number: an ``int`` if written without point and exponent."""
 
@@ -105,12 +112,41 @@ class Link(Node):
     reference: Ref
 
 
+PropertyValue = Ref | Quantity | Number | Text | Truth
+"""A value of a property. A word without quotes is a ``Text``."""
+
+
 @dataclass(frozen=True, slots=True)
-class Member(Node):
-    """An object, workspace or agent inside its set. ``correct_for`` are the objects that belong in a workspace."""
+class Property(Node):
+    """``mass: 0.2 kg``: what is known about an element. Several values are separated by commas."""
 
     name: Name
-    correct_for: tuple[Link, ...]
+    values: tuple[PropertyValue, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CorrectFor(Node):
+    """``correct for: …``: the objects that belong in a workspace."""
+
+    objects: tuple[Link, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Member(Node):
+    """An object, workspace or agent inside its set. Only workspaces have ``CorrectFor`` among their details."""
+
+    name: Name
+    details: tuple[Property | CorrectFor, ...]
+
+    @property
+    def properties(self) -> tuple[Property, ...]:
+        """The stated properties of the element."""
+        return tuple(one for one in self.details if isinstance(one, Property))
+
+    @property
+    def correct_for(self) -> tuple[Link, ...]:
+        """The objects, or sets of objects, that belong in the workspace."""
+        return tuple(link for one in self.details if isinstance(one, CorrectFor) for link in one.objects)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +168,7 @@ class SimilarSet(Node):
     name: Name
     base: Name
     count: Number
+    properties: tuple[Property, ...]
 
 
 @dataclass(frozen=True, slots=True)

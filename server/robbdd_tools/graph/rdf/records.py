@@ -49,6 +49,10 @@ class Records:
         """Return all values of a property."""
         return tuple(self._values.get(node, {}).get(expand(term), ()))
 
+    def properties(self, node: str) -> tuple[str, ...]:
+        """Return the IRIs of a node's properties in alphabetical order."""
+        return tuple(sorted(self._values.get(node, {})))
+
     def types(self, node: str) -> frozenset[str]:
         """Return the IRIs of a node's classes."""
         return frozenset(str(kind) for kind in self._values.get(node, {}).get(self._type, ()))

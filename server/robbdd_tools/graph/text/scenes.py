@@ -8,13 +8,17 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.records import Incomplete, elements_of, items_of
-from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
-from robbdd_tools.graph.text.names import NAME, Names, braces, indented
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, QUANTITY, expand
+from robbdd_tools.graph.text.names import NAME, Names, braces, indented, quoted
 
 if TYPE_CHECKING:
+    from rdflib.term import Node
+
     from robbdd_tools.graph.acceptance_model import Iri
 
 WORDS = {"object": "obj", "workspace": "ws", "agent": "agn"}
+TRUTHS = ("true", "false")
+_NUMERIC = (expand("xsd:integer"), expand("xsd:double"), QUANTITY)
 _MEMBERSHIP = re.compile(r"-scene-has-(?:obj|ws|agn)(?:-\d+)?\Z")
 
 
@@ -117,15 +121,48 @@ class SceneText:
         count = self.names.records.literal(node, "rbw:count")
         base = names[0].removesuffix("0") if names else kind
         if count == len(names) and names == [f"{base}{index}" for index in range(len(names))]:
-            return f"similar {head} {{ base name: {base}  count: {count} }}"
-        entries = (f"{kind} {name}{self._fitting(member, kind)}" for member, name in zip(members, names, strict=True))
+            first, *others = (self._properties(node, member) for member in members)
+            common = [one for one in first if all(one in properties for properties in others)]
+            return f"similar {head} {{ {'  '.join((f'base name: {base}', f'count: {count}', *common))} }}"
+        entries = [f"{kind} {name}{self._details(node, m, kind)}" for m, name in zip(members, names, strict=True)]
+        if any(self._properties(node, member) for member in members):
+            lines = indented(",\n".join(entries))
+            return f"{head} {{\n{lines}\n}}"
         return f"{head} {braces(entries)}"
 
-    def _fitting(self, member: str, kind: str) -> str:
-        """Return what a workspace is correct for, in braces; empty if the graph does not state it."""
+    def _details(self, set_: str, member: str, kind: str) -> str:
+        """Return what the graph states about an element, in braces; empty if it states nothing."""
         stated = map(str, self.names.records.all(member, "rbw:correct-for")) if kind == "workspace" else ()
-        found = sorted(node for node in stated if self.kinds.get(node, self._elements.get(node)) == "object")
-        return f" {{ correct for: {', '.join(map(self._entry, found))} }}" if found else ""
+        fitting = sorted(node for node in stated if self.kinds.get(node, self._elements.get(node)) == "object")
+        correct = [f"correct for: {', '.join(map(self._entry, fitting))}"] if fitting else []
+        found = (*correct, *self._properties(set_, member))
+        return f" {{ {'  '.join(found)} }}" if found else ""
+
+    def _properties(self, set_: str, member: str) -> list[str]:
+        """Return the properties of an element that are in the namespace of its set."""
+        records, namespace = self.names.records, self.names.split(set_)[0]
+        found: list[str] = []
+        for term in records.properties(member):
+            name = term.removeprefix(namespace)
+            if term != name and NAME.fullmatch(name):
+                values = [text for value in records.all(member, term) if (text := self._value(value)) is not None]
+                found += [f"{name}: {', '.join(values)}"] if values else []
+        return found
+
+    def _value(self, value: Node) -> str | None:
+        """Return a value of a property; ``None`` if the language cannot write it."""
+        kind = str(getattr(value, "datatype", None) or "")
+        if self.names.records.iris([value]):
+            return self.names.reference(str(value)) if str(value) in self._elements else None
+        if getattr(value, "language", None):
+            return None
+        text = str(value)
+        if kind == expand("xsd:boolean"):
+            return text if text in TRUTHS else None
+        if kind in ("", expand("xsd:string")):
+            return text if NAME.fullmatch(text) and text not in TRUTHS else quoted(text)
+        written = self.names.value(value) if kind in _NUMERIC else None
+        return None if written is None or written.startswith('"') else written
 
     def _composition(self, node: Iri) -> Iterator[str]:
         records, names = self.names.records, self.names

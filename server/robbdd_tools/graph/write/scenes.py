@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
-from robbdd_tools.graph.write.sink import Frame, Sink
+from robbdd_tools.graph.write.sink import Frame, Sink, namespace_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -119,6 +119,8 @@ def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> 
             frame.sink.mark(node, "bdd:elements", element, frame.at(member.name))
             members.append(element)
             _add_fitting_objects(frame, element, member)
+            namespace = namespace_of(element, member.name.text)
+            _add_properties(frame, namespace, element, member.properties)
     scenes.sets[node] = (declared.kind, tuple(members))
     add_set(frame, node, declared.name, members)
 
@@ -129,6 +131,16 @@ def _add_fitting_objects(frame: Frame, workspace: URIRef, member: tree.Member) -
         target = frame.target(link.reference)
         if target is not None:
             frame.sink.add(workspace, "rbw:correct-for", target, frame.at(link.reference))
+
+
+def _add_properties(frame: Frame, namespace: str, element: URIRef, properties: Iterable[tree.Property]) -> None:
+    """Add what is known about an element as properties of the namespace of its set."""
+    for stated in properties:
+        term = frame.sink.iri(namespace + stated.name.text)
+        for written in stated.values if term is not None else ():
+            value = frame.target(written) if isinstance(written, tree.Ref) else frame.sink.value(written)
+            if value is not None:
+                frame.sink.add(element, str(term), value, frame.at(stated))
 
 
 def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> None:
@@ -144,6 +156,8 @@ def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> 
         if frame.sink.claim(element, frame.at(declared.base)):
             frame.sink.add_types(element, [ELEMENT_TYPES[declared.kind]], frame.at(declared.base))
             members.append(element)
+            namespace = namespace_of(node, declared.name.text)
+            _add_properties(frame, namespace, element, declared.properties)
     scenes.sets[node] = (declared.kind, tuple(members))
     frame.sink.add(node, "rbw:count", frame.sink.literal(declared.count.value), frame.at(declared.count))
     add_set(frame, node, declared.name, members)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.graph.write.declarations import Key
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
-    from robbdd_tools.syntax.tree import ChunkTree, Name, Number, Ref, Text
+    from robbdd_tools.syntax.tree import ChunkTree, Name, Number, Ref, Text, Truth
     from robbdd_tools.syntax.tree import Node as TreeNode
 
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\udfff]*")
@@ -61,8 +61,8 @@ class Sink:
 
         return Literal(text, datatype=URIRef(QUANTITY))
 
-    def value(self, value: Number | Text | Quantity) -> Node:
-        """Return the literal of a value in a set or a variation."""
+    def value(self, value: Number | Text | Quantity | Truth) -> Node:
+        """Return the literal of a value in a set, a variation or a property."""
         return self.quantity(value.text) if isinstance(value, Quantity) else self.literal(value.value)
 
     def claim(self, node: URIRef, location: Location) -> bool:

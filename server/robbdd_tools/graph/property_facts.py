@@ -1,0 +1,137 @@
+"""The properties of elements: those that scenes declare, and those that imported graphs state.
+
+In a model, a property is known by its name without the namespace: ``colour`` stands for every property of this name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.graph_formats import graph_format
+from robbdd_tools.base.property_values import ELEMENT, NUMBER, TEXT, TRUTH, PropertyValue, quantity_value
+from robbdd_tools.graph.rdf.vocabulary import PREFIXES, QUANTITY, expand
+from robbdd_tools.graph.write.imported_graphs import imported_graph
+from robbdd_tools.names.elements import Site
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import MAX_COPIES
+
+if TYPE_CHECKING:
+    from rdflib.term import Node
+
+    from robbdd_tools.graph.write.source_map import Location
+    from robbdd_tools.names.project import Snapshot
+
+_OF_VOCABULARIES = (*PREFIXES.values(), "http://www.w3.org/2000/01/rdf-schema#", "http://www.w3.org/2002/07/owl#")
+"""Namespaces whose properties are not properties of elements."""
+_LOCAL = re.compile(r"[^\W\d][\w\-]*\Z")
+_NUMBERS = tuple(
+    expand(f"xsd:{kind}") for kind in ("integer", "decimal", "double", "float", "int", "nonNegativeInteger")
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One value of a property of an element: ``element`` and ``term`` are IRIs, ``name`` is the property's name.
+
+    ``written`` is the declaration in a scene, ``place`` that in an imported graph if it is known.
+    """
+
+    element: str
+    term: str
+    name: str
+    value: PropertyValue
+    written: tuple[Site, tree.Property] | None = None
+    place: Location | None = None
+
+
+def property_name(term: str) -> str | None:
+    """Return the name of a property, given its IRI; ``None`` for terms of RDF and of the published vocabulary."""
+    match = _LOCAL.search(term, max(term.rfind(sign) for sign in "/#:") + 1)
+    return None if match is None or term[: match.start()] in _OF_VOCABULARIES else match[0]
+
+
+def value_of(node: Node) -> PropertyValue | None:
+    """Return the value that a node of a graph denotes; ``None`` for a blank node."""
+    from rdflib import BNode, Literal
+
+    text = str(node)
+    if not isinstance(node, Literal):
+        return None if isinstance(node, BNode) else PropertyValue(ELEMENT, text)
+    kind = str(node.datatype or "")
+    if kind == QUANTITY:
+        return quantity_value(text)
+    if kind == expand("xsd:boolean"):
+        return PropertyValue(TRUTH, {"1": "true", "0": "false"}.get(text, text))
+    return PropertyValue(NUMBER if kind in _NUMBERS else TEXT, text)
+
+
+def facts(snapshot: Snapshot, uri: str) -> Iterator[Fact]:
+    """Yield the properties of the elements that a file can use: first declared ones, then those of imported graphs."""
+    closure = snapshot.closure(uri)
+    for file in closure:
+        for placed in file.declarations:
+            if isinstance(placed.declaration.tree, tree.ElementSet | tree.SimilarSet):
+                yield from declared_facts(Site(snapshot, file, placed))
+    if not any(graph_format(link.uri) for file in closure for link in file.imports):
+        return
+    imported = imported_graph(snapshot, uri)
+    elements = {definition.iri for file in closure for definition in file.definitions.values()}
+    for subject, predicate, node in imported.triples:
+        name = property_name(str(predicate)) if str(subject) in elements else None
+        value = None if name is None else value_of(node)
+        if name is not None and value is not None:
+            key = (str(subject), str(predicate))
+            place = imported.places.get((*key, str(node))) or imported.places.get(key)
+            yield Fact(*key, name, value, place=place)
+
+
+def declared_facts(site: Site) -> Iterator[Fact]:
+    """Yield the properties that a set of elements declares."""
+    root = site.tree
+    if isinstance(root, tree.ElementSet):
+        for member in root.members:
+            yield from _of_element(site, f"{root.name.text}.{member.name.text}", member.properties)
+    elif isinstance(root, tree.SimilarSet) and root.properties:
+        count = root.count.value if isinstance(root.count.value, int) else 0
+        for number in range(min(count, MAX_COPIES)):
+            yield from _of_element(site, f"{root.name.text}.{root.base.text}{number}", root.properties)
+
+
+def _of_element(site: Site, path: str, properties: tuple[tree.Property, ...]) -> Iterator[Fact]:
+    definition = site.file.definitions.get(path) if properties else None
+    if definition is None or definition.iri is None:
+        return
+    namespace = definition.iri.removesuffix(definition.symbol.name)
+    for stated in properties:
+        for written in stated.values:
+            value = written_value(site, written)
+            if value is not None:
+                term = namespace + stated.name.text
+                yield Fact(definition.iri, term, stated.name.text, value, (site, stated))
+
+
+def written_value(site: Site, written: tree.PropertyValue) -> PropertyValue | None:
+    """Return the value that a text denotes; ``None`` for an unknown name."""
+    match written:
+        case tree.Quantity():
+            return quantity_value(written.text)
+        case tree.Number():
+            return PropertyValue(NUMBER, str(written.value))
+        case tree.Truth():
+            return PropertyValue(TRUTH, str(written.value).lower())
+        case tree.Text():
+            return PropertyValue(TEXT, written.value)
+        case tree.Ref():
+            target = site.target(written)
+            return None if target is None or target.iri is None else PropertyValue(ELEMENT, target.iri)
+
+
+def properties_by_element(snapshot: Snapshot, uri: str) -> Mapping[str, Mapping[str, tuple[PropertyValue, ...]]]:
+    """Return the values of each property (by name) of each element (IRI) that a file can use."""
+    found: dict[str, dict[str, dict[PropertyValue, None]]] = {}
+    for fact in facts(snapshot, uri):
+        found.setdefault(fact.element, {}).setdefault(fact.name, {})[fact.value] = None
+    return {element: {name: tuple(values) for name, values in known.items()} for element, known in found.items()}
