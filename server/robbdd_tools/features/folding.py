@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.memory import kept_with_key
@@ -18,11 +18,10 @@ if TYPE_CHECKING:
 
 _SIGNS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
 
-_LINE_END = re.compile(r"\r\n|\r|\n")
+_BEGINNINGS = (("//", "comment"), ("import", "imports"))
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Fold:
+class Fold(NamedTuple):
     """A range of lines (from 0) that can be folded into its first line.
 
     ``kind`` is ``region``, ``comment`` or ``imports``.
@@ -38,27 +37,24 @@ def folds(snapshot: Snapshot, uri: str) -> list[Fold]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    lines = [line.lstrip() for line in _LINE_END.split(analysis.document.text)]
-    found = {
-        *_brackets(analysis),
-        *_runs(lines, "//", "comment"),
-        *_runs(lines, "import", "imports"),
-    }
-    return sorted(found)
+    return sorted({*_brackets(analysis), *_runs(analysis.document)})
 
 
 def _brackets(file: FileAnalysis) -> Iterator[Fold]:
     opened: list[int] = []
     if is_study(file.document.uri):
-        yield from (
-            Fold(first, last - 1, "region") for first, last in _pairs(file.document.text).pairs if last - 1 > first
-        )
+        yield from (Fold(first, last - 1, "region") for first, last in _pairs(file.document.text).pairs)
     for placed in file.parts():
-        start = file.document.position(placed.offset).line
         inside = _brackets_in(placed.declaration)
-        for first, last in (*inside.pairs, *((opened.pop() - start, last) for last in inside.closed if opened)):
-            if last - 1 > first:
-                yield Fold(start + first, start + last - 1, "region")
+        if inside is _NONE:
+            continue
+        start = file.document.position(placed.offset).line
+        for first, last in inside.pairs:
+            yield Fold(start + first, start + last - 1, "region")
+        for last in inside.closed if opened else ():
+            first = opened.pop() if opened else start + last
+            if start + last - 1 > first:
+                yield Fold(first, start + last - 1, "region")
         opened += (start + line for line in inside.opened)
 
 
@@ -66,7 +62,8 @@ def _brackets(file: FileAnalysis) -> Iterator[Fold]:
 class _Brackets:
     """The line numbers of the brackets in a text, counted from the first line of the text.
 
-    ``pairs`` are the lines of matching brackets. ``closed`` and ``opened`` are the lines of unmatched brackets.
+    ``pairs`` are the lines of matching brackets with at least one line between them. ``closed`` and ``opened`` are the
+    lines of unmatched brackets.
     """
 
     pairs: tuple[tuple[int, int], ...]
@@ -74,9 +71,13 @@ class _Brackets:
     opened: tuple[int, ...]
 
 
+_NONE = _Brackets((), (), ())
+
+
 @kept_with_key
 def _brackets_in(declaration: Declaration) -> _Brackets:
-    return _pairs(declaration.text)
+    found = _pairs(declaration.text)
+    return _NONE if found == _NONE else found
 
 
 def _pairs(text: str) -> _Brackets:
@@ -89,19 +90,35 @@ def _pairs(text: str) -> _Brackets:
             opened.append(document.position(match.start()).line)
         elif match["close"]:
             line = document.position(match.start()).line
-            if opened:
-                pairs.append((opened.pop(), line))
-            else:
+            if not opened:
                 closed.append(line)
+            elif line - 1 > (first := opened.pop()):
+                pairs.append((first, line))
     return _Brackets(tuple(pairs), tuple(closed), tuple(opened))
 
 
-def _runs(lines: list[str], beginning: str, kind: str) -> Iterator[Fold]:
-    first: int | None = None
-    for number, line in enumerate([*lines, ""]):
-        if line.startswith(beginning):
-            first = number if first is None else first
-            continue
-        if first is not None and number - 1 > first:
-            yield Fold(first, number - 1, kind)
-        first = None
+def _runs(document: Document) -> Iterator[Fold]:
+    """Yield the runs of at least two lines that are comments, or imports."""
+    for beginning, kind in _BEGINNINGS:
+        first, last = 0, -1
+        for line in _lines_with(document, beginning):
+            if line != last + 1:
+                if last > first:
+                    yield Fold(first, last, kind)
+                first = line
+            last = line
+        if last > first:
+            yield Fold(first, last, kind)
+
+
+def _lines_with(document: Document, beginning: str) -> Iterator[int]:
+    """Yield the numbers of the lines that begin with a text, after white space."""
+    text, starts = document.text, document.line_starts
+    # Many times as fast as a look at each line.
+    found = text.find(beginning)
+    while found >= 0:
+        line = document.position(found).line
+        if not text[starts[line] : found].strip():
+            yield line
+        after = starts[line + 1] if line + 1 < len(starts) else len(text)
+        found = text.find(beginning, after)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.features.folding import folds
-from robbdd_tools.features.outline import Item, outline
+from robbdd_tools.features.outline import outline_pieces
 from robbdd_tools.features.outside_names import outside_references
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
 from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.lsp.convert import document_of, symbol_kind
+from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text
+from robbdd_tools.lsp.json_text import JsonText
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
@@ -83,13 +87,16 @@ def _outside(
 
 
 def _register_structure(server: RobbddServer) -> None:
-    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    async def symbols(ls: RobbddServer, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        def find(snapshot: Snapshot) -> list[types.DocumentSymbol]:
-            uri = params.text_document.uri
-            return [_symbol(ls, snapshot, uri, item) for item in outline(snapshot, uri)]
+    # pygls declares the base class of the protocol only.
+    protocol: Any = server.protocol
+    writer = OutlineWriter(protocol.serialised)
 
-        return await ls.analyse(find)
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    async def symbols(ls: RobbddServer, params: types.DocumentSymbolParams) -> JsonText:
+        uri = params.text_document.uri
+        return await ls.analyse(
+            lambda snapshot: writer.text(ls.convert, document_of(snapshot, uri), outline_pieces(snapshot, uri))
+        )
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def names(ls: RobbddServer, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
@@ -109,18 +116,5 @@ def _register_structure(server: RobbddServer) -> None:
         return await ls.analyse(find, urgent=False)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
-    async def folding(ls: RobbddServer, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
-        found = await ls.analyse(lambda snapshot: folds(snapshot, params.text_document.uri))
-        return [types.FoldingRange(start_line=fold.first, end_line=fold.last, kind=fold.kind) for fold in found]
-
-
-def _symbol(ls: RobbddServer, snapshot: Snapshot, uri: str, item: Item) -> types.DocumentSymbol:
-    document = document_of(snapshot, uri)
-    return types.DocumentSymbol(
-        name=item.name,
-        detail=item.kind,
-        kind=symbol_kind(item.kind),
-        range=ls.convert.range(document, item.extent),
-        selection_range=ls.convert.range(document, item.span),
-        children=[_symbol(ls, snapshot, uri, part) for part in item.children],
-    )
+    async def folding(ls: RobbddServer, params: types.FoldingRangeParams) -> JsonText:
+        return folds_text(await ls.analyse(lambda snapshot: folds(snapshot, params.text_document.uri)))

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, cast
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams, JsonRpcInvalidRequest
+from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcInvalidParams, JsonRpcInvalidRequest
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.protocol.json_rpc import JsonRPCNotification
 
 from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.base.uris import canonical_uri
+from robbdd_tools.lsp.json_text import JsonText
 from robbdd_tools.lsp.transport import end_soon
 
 _LOG = logging.getLogger(__name__)
@@ -115,15 +117,43 @@ class Protocol(LanguageServerProtocol):
         loop = asyncio.get_running_loop()
         future.add_done_callback(lambda _: loop.call_soon(drop))
 
+    def serialised(self, value: Any) -> str:
+        """Return a value of the protocol as JSON text, as pygls would send it."""
+        return json.dumps(value, default=self._serialize_message)
+
+    def _send_response(self, msg_id: Any, result: Any | None = None, error: Any | None = None) -> None:
+        if error is not None or not isinstance(result, JsonText):
+            super()._send_response(msg_id, result, error)
+            return
+        self._result_types.pop(msg_id, None)
+        text = f'{{"id": {json.dumps(msg_id)}, "jsonrpc": "{self.VERSION}", "result": {result.text}}}'
+        self._submit(self._write_text, text)
+
     def _send_data(self, data: Any) -> None:
+        self._submit(self._write, data)
+
+    def _submit(self, write: Callable[[Any], None], data: Any) -> None:
         try:
-            self._outbox.submit(self._write, data)
+            self._outbox.submit(write, data)
         except RuntimeError:
             # The session has ended: all earlier messages are written.
-            self._write(data)
+            write(data)
 
     def _write(self, data: Any) -> None:
         super()._send_data(data)
+
+    def _write_text(self, text: str) -> None:
+        """Send a message that is already serialised, with the same header as pygls."""
+        body = text.encode(self.CHARSET)
+        header = f"Content-Length: {len(body)}\r\nContent-Type: {self.CONTENT_TYPE}; charset={self.CHARSET}\r\n\r\n"
+        try:
+            # The server writes to streams without event loop only.
+            writer: Any = self.writer
+            writer.write(header.encode(self.CHARSET) + body)
+        except Exception as error:
+            # As pygls does; its base class of servers declares no public method for this.
+            server: Any = self._server
+            server.report_server_error(error, JsonRpcInternalError)
 
 
 def with_canonical_uris(message: Any, spelling: Callable[[str], str] = str) -> Any:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PlacedDeclaration:
     """A declaration at its offset in a document.
 
@@ -33,7 +34,7 @@ class PlacedDeclaration:
         """The absolute span of the declaration's text."""
         return Span(self.offset, self.offset + len(self.declaration.text))
 
-    @property
+    @cached_property
     def parts(self) -> tuple[PlacedDeclaration, ...]:
         """The parts of the declaration at their places in the document; the declaration itself if it has no parts."""
         inner = self.declaration.parts
@@ -54,7 +55,7 @@ class ImportLink:
     problem: str | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FileAnalysis:
     """One file of a snapshot. ``definitions`` maps qualified names to this file's own declarations."""
 
@@ -64,13 +65,20 @@ class FileAnalysis:
     definitions: Mapping[str, Definition]
     diagnostics: tuple[Diagnostic, ...]
 
-    def parts(self, within: Span | None = None) -> Iterator[PlacedDeclaration]:
-        """Yield the declarations, or their parts, that touch a span of the document. ``None`` is the whole document."""
-        for placed in self.declarations:
-            if within is None or (placed.offset <= within.end and within.start <= placed.span.end):
-                for part in placed.parts:
-                    if within is None or (part.offset <= within.end and within.start <= part.span.end):
-                        yield part
+    @cached_property
+    def _parts(self) -> tuple[PlacedDeclaration, ...]:
+        return tuple(part for placed in self.declarations for part in placed.parts)
+
+    def parts(self, within: Span | None = None) -> Sequence[PlacedDeclaration]:
+        """Return the declarations, or their parts, that touch a span of the document; by default, all of them."""
+        if within is None:
+            return self._parts
+        # Neither declarations nor their parts overlap.
+        first = max(0, bisect_right(self._parts, within.start, key=_offset) - 1)
+        while first and self._parts[first - 1].span.end >= within.start:
+            first -= 1
+        last = bisect_right(self._parts, within.end, key=_offset)
+        return [part for part in self._parts[first:last] if within.start <= part.span.end]
 
     def part_at(self, offset: int) -> PlacedDeclaration | None:
         """Return the last declaration, or part of one, that begins at or before an offset."""
