@@ -17,6 +17,7 @@ const ANSWERS = {
   preview: "Preview",
   runmessage: "RunNotification",
   runs: "StoredRuns",
+  scene: "ScenePicture",
   testresults: "FoundResults",
   tests: "Listing",
   trace: "Trace",

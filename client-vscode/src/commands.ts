@@ -10,7 +10,7 @@ import type { ReplayView } from "./panels/replay/view";
 import type { SceneView } from "./panels/scene/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
-import { TYPE } from "./debugging";
+import { debugScenario } from "./debugChoice";
 import { RUNNABLE, SCENES, STUDIES, modelFor, openModel } from "./models";
 import { inform } from "./notices";
 import { newProject } from "./projects";
@@ -52,7 +52,7 @@ export function registerCommands(
     "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
     "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
     "robbdd.debugFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri, debug: true }), RUNNABLE),
-    "robbdd.debugScenario": (target) => withModel(target, debugScenario, RUNNABLE),
+    "robbdd.debugScenario": (target) => withModel(modelOf(target), (uri) => debugScenario(server, uri, target), RUNNABLE),
     "robbdd.showPausedScene": () => scenes.open(),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
@@ -97,13 +97,6 @@ export function registerCommands(
   return Object.entries(handlers).map(([name, handler]) => vscode.commands.registerCommand(name, handler));
 }
 
-/** Debug the first scenario of a model, with breakpoints on its clauses. */
-async function debugScenario(uri: string): Promise<void> {
-  const model = vscode.Uri.parse(uri);
-  const configuration = { type: TYPE, request: "launch", name: "RobBDD", program: model.fsPath };
-  await vscode.debug.startDebugging(vscode.workspace.getWorkspaceFolder(model), configuration);
-}
-
 async function withModel(target: unknown, task: (uri: string) => unknown, languages?: string[]): Promise<void> {
   const uri = await modelFor(target, languages);
   if (uri !== undefined) {
@@ -111,10 +104,13 @@ async function withModel(target: unknown, task: (uri: string) => unknown, langua
   }
 }
 
-/** `target` is the file of a menu, or the argument of a lens. */
+/** The file of a menu, or that which the argument of a lens names. */
+function modelOf(target: unknown): unknown {
+  return hasUri(target) ? vscode.Uri.parse(target.uri) : target;
+}
+
 async function withStudy(server: Server, target: unknown, action: StudyAction): Promise<void> {
-  const named = hasUri(target) ? vscode.Uri.parse(target.uri) : target;
-  await withModel(named, (uri) => executeStudy(server, vscode.Uri.parse(uri), action), STUDIES);
+  await withModel(modelOf(target), (uri) => executeStudy(server, vscode.Uri.parse(uri), action), STUDIES);
 }
 
 async function runWithOptions(server: Server, chooser: RunOptionsChooser, uri: string): Promise<void> {

@@ -51,7 +51,7 @@ export function createClient(
     {
       documentSelector: languages.map((language) => ({ scheme: "file", language })),
       outputChannel: log,
-      initializationOptions: { pictures: true, replay: true, history: true, studies: true, trusted: vscode.workspace.isTrusted },
+      initializationOptions: { pictures: true, replay: true, history: true, studies: true, debugging: true, trusted: vscode.workspace.isTrusted },
       markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay", "robbdd.showHistory"] } },
       initializationFailedHandler: () => false,
       errorHandler: {

@@ -2,14 +2,16 @@
 import assert from "node:assert/strict";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
+import { FILE, scenario } from "./testing.kit";
 import { LanguageClient } from "./languageclient.kit";
 import { CancellationTokenSource, editor } from "./vscode.kit";
 import { MODEL, client, command, openWindow, until } from "./window.kit";
 
 const LISTS = Object.fromEntries(["shapes", "meshes", "bodies", "workspaces", "events", "clauses"].map((name) => [name, []]));
-const NUMBERS = { shape: [0], data: "" };
+const NUMBERS = { type: "float32", shape: [0], data: "" };
 const FRAMES = { times: NUMBERS, poses: NUMBERS, bodies: [] };
-const TRACE = { run: 1, folder: "file:///run", scenario: { name: "t:fetch -- 1" }, frames: FRAMES, ...LISTS };
+const SCENARIO = { index: 0, name: "t:fetch -- 1", values: "", story: "", variant: "", variation: 1, repetition: 1, seed: 1, verdict: "unknown", trace: true };
+const TRACE = { run: 1, folder: "file:///run", scenario: SCENARIO, remark: "", frames: FRAMES, ...LISTS };
 const SESSION = { type: "robbdd", request: "attach", name: "RobBDD", port: 4711, justMyCode: true };
 
 /** The options of the runs that the server was asked for; its process waits for a debugger. */
@@ -60,7 +62,7 @@ test("the paused scene is shown on request and follows each pause", async () => 
   const asked: string[] = [];
   const customRequest = (name: string) => {
     asked.push(name);
-    return Promise.resolve({ ...TRACE, duration: asked.length });
+    return Promise.resolve({ ...TRACE, duration: asked.length, paused_at: asked.length });
   };
   const session = { type: "robbdd", configuration: { request: "launch" }, customRequest };
   const tracker = editor.track(session) as { onDidSendMessage: (message: unknown) => void };
@@ -73,6 +75,33 @@ test("the paused scene is shown on request and follows each pause", async () => 
   await until(() => asked.length === 2);
   assert.deepEqual(asked, ["robbdd/scene", "robbdd/scene"]);
   assert.equal(editor.panels.length, 1);
+  const [panel] = editor.panels;
+  panel?.fromPage.fire({ type: "ready" });
+  const selected = () => panel?.posted.map((posted) => (posted as { clause?: unknown }).clause).at(-1);
+  await until(() => selected() !== undefined);
+  assert.equal(selected(), 2, "the clause at which it paused is selected");
+});
+
+const LENS = { uri: FILE, scenario: "t:fetch", variant: "t:fetch" };
+
+test("the lens of a scenario debugs the execution that the user chooses by its values", async () => {
+  openWindow();
+  const asked: unknown[] = [];
+  LanguageClient.answers.set("robbdd/tests", (params: unknown) => {
+    asked.push(params);
+    return { problem: null, files: [FILE], tests: [scenario(1), scenario(2)] };
+  });
+  const launch = { type: "robbdd", request: "launch", name: "RobBDD", program: "/cell/fetch.bdd", scenario: "t:fetch" };
+  editor.choices.push("cube2");
+  await command("robbdd.debugScenario", { ...LENS, count: 2 });
+  assert.deepEqual(editor.debugged, [{ ...launch, variation: 2 }]);
+  assert.deepEqual(asked, [{ uri: FILE, variant: "t:fetch", most: 1000 }]);
+  // Without a choice, nothing is debugged.
+  await command("robbdd.debugScenario", { ...LENS, count: 2 });
+  assert.equal(editor.debugged.length, 1);
+  // The only scenario needs no choice.
+  await command("robbdd.debugScenario", { ...LENS, count: 1 });
+  assert.deepEqual([editor.debugged.at(-1), asked.length, editor.lists.length], [launch, 2, 2]);
 });
 
 test("so is a run of selected tests", async () => {

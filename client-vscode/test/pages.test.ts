@@ -22,7 +22,7 @@ const POLICY = /^default-src 'none'; script-src 'nonce-(?<nonce>[\w-]{22,})'; st
 
 /** Answer the requests of all panels with two runs of one scenario, of such names. */
 function answer(): void {
-  const array = { shape: [], data: "" };
+  const array = { type: "float32", shape: [], data: "" };
   const frames = { times: array, poses: array, bodies: [] };
   const lists = { shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [] };
   const scenario = { index: 0, name: HOSTILE, values: HOSTILE, story: HOSTILE, variant: HOSTILE, variation: 1, seed: 0, verdict: "holds", repetition: 1, trace: true };
@@ -38,7 +38,7 @@ function answer(): void {
   LanguageClient.answers.set("robbdd/compare", () => comparison);
   const scene = { iri: HOSTILE, name: HOSTILE, ...lists, sampled: [HOSTILE], missing: [HOSTILE], faults: [{ kind: "pose", reason: HOSTILE, source: null }] };
   LanguageClient.answers.set("robbdd/scene", () => ({ uri: MODEL.toString(), problem: HOSTILE, scenes: [scene] }));
-  LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, scenario, frames, ...lists }));
+  LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, remark: "", scenario, frames, ...lists }));
   editor.files.set(`${folder}/results.json`, JSON.stringify({ complete: true, scenarios: [] }));
 }
 

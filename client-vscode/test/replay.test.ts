@@ -27,6 +27,7 @@ const clause = (name: string, verdict: Clause["verdict"], at: number | null): Cl
   robustness: null,
   unit: "",
   at,
+  worst_at: at,
   reason: "",
   vacuous: "",
   source: null,
@@ -136,11 +137,20 @@ test("stored runs are told with how they came out", () => {
 
 test("an answer of another version is no trace", () => {
   const array = packed([], 0);
-  const trace = { run: 1, duration: 0, scenario: {}, frames: { times: array, poses: array, bodies: [] } };
-  const lists = { shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [{ parts: [] }] };
-  assert.ok(isTrace({ ...trace, ...lists }));
-  for (const name of Object.keys(lists)) {
-    assert.ok(!isTrace({ ...trace, ...lists, [name]: undefined }), name);
+  const scenario = {
+    index: 0, name: "t:fetch -- 1", values: "", story: "", variant: "", variation: 1, repetition: 1, seed: 1, verdict: "holds", trace: true,
+  };
+  const trace = {
+    run: 1, folder: "", duration: 0, remark: "", scenario, frames: { times: array, poses: array, bodies: [] },
+    ...{ shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [clause("at-goal", "holds", null)] },
+  };
+  assert.ok(isTrace(trace));
+  assert.ok(isTrace({ ...trace, a_later_field: 1 }));
+  for (const name of Object.keys(trace)) {
+    assert.ok(!isTrace({ ...trace, [name]: undefined }), name);
+  }
+  for (const name of Object.keys(scenario)) {
+    assert.ok(!isTrace({ ...trace, scenario: { ...scenario, [name]: undefined } }), name);
   }
 });
 
@@ -166,7 +176,7 @@ test("the camera follows tools and moving elements, not links, in words", () => 
 test("forces are those of the picture that is shown, the largest first, and none is invented", () => {
   const frames = { times: packed([0, 1, 2], 3), bodies: [], poses: packed([], 0) };
   const force = (other: string, bodies: readonly [number | null, number | null], ...peaks: number[]) => {
-    return { between: ["env:ur10", other], bodies, peaks: packed(peaks, 3) };
+    return { between: ["env:ur10", other] as const, bodies, peaks: packed(peaks, 3) };
   };
   const forces = [force("env:ball", [4, 1], 0, 1.5, 2), force("env:bin", [4, 2], 0, 0, 31.25), force("floor", [4, null], 0.01, 0, 3)];
   const pressed = new Pressed({ frames, forces });

@@ -102,6 +102,7 @@ def test_it_steps_by_moments_and_samples_pauses_and_writes_the_scene(client: Cli
     first = client.ask("robbdd/scene")
     assert schema_errors("trace.schema.json", first) == []
     assert {clause["reason"] for clause in first["clauses"]} == {"not judged yet"}
+    assert first["clauses"][first["paused_at"]]["name"] == "at-source"
     client.ask("stepIn", threadId=1)
     assert stopped(client) == ("step", "")
     assert client.ask("robbdd/scene")["duration"] == pytest.approx(first["duration"] + 0.016)

@@ -7,9 +7,11 @@ from typing import Any
 
 import pytest
 from lsprotocol import types
+from pytest_lsp import client_capabilities, make_test_lsp_client
 
+from fork_kit import ROBBDD_LSP
 from kit import schema_errors
-from lsp_kit import Editor, plain
+from lsp_kit import Editor, begin_session, plain
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
 
@@ -171,6 +173,27 @@ async def test_each_execution_is_run_by_a_lens_of_its_own(editor: Editor, model:
     params = types.CodeActionParams(text_document=document, range=place, context=context)
     actions = await editor.client.text_document_code_action_async(params)
     assert [action.title for action in actions or ()] == ["Run execution far-too-strict"]
+
+
+async def test_a_client_that_debugs_gets_a_lens_for_each_scenario_and_execution(tmp_path: Path) -> None:
+    client: Any = make_test_lsp_client()
+    await client.start_io(*ROBBDD_LSP, "--stdio")
+    await begin_session(client, tmp_path, client_capabilities("visual-studio-code"), [], {"debugging": True})
+    editor = Editor(client, tmp_path)
+    found: list[Any] = []
+    for path in (editor.path, editor.path.with_suffix(".bddx")):
+        show(editor, path)
+        document = types.TextDocumentIdentifier(uri=path_to_uri(path))
+        lenses = await client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
+        commands = [lens.command for lens in lenses or () if lens.command is not None]
+        found += [plain(one.arguments)[0] for one in commands if one.command == "robbdd.debugScenario"]
+    await client.shutdown_session()
+    assert {Path(one.pop("uri")).suffix for one in found} == {".bdd", ".bddx"}
+    assert {one["scenario"] for one in found} >= {VARIANT, ONE}
+    assert [one for one in found if one["variant"] == VARIANT] == [
+        {"scenario": VARIANT, "variant": VARIANT, "count": 4},
+        {"scenario": ONE, "variant": VARIANT, "count": 4},
+    ]
 
 
 @pytest.mark.physics

@@ -115,7 +115,7 @@ function begin({ trace, recording, clause, time }: ToReplay & { readonly type: "
   shown = { trace, recording, line, motion: new Motion(trace), forces: new Pressed(trace), bodies: followable(trace) };
   place.replaceChildren(scene(shown), line.root);
   const restored = kept?.clause !== undefined && kept.time !== undefined && clause === undefined;
-  choose(restored ? (kept.clause ?? -1) : firstClause(trace.clauses, clause));
+  choose(restored ? (kept.clause ?? -1) : typeof clause === "number" ? clause : firstClause(trace.clauses, clause));
   clock.seek(time ?? (restored ? kept.time : violated()) ?? 0);
   if (stage !== undefined && restored && kept.camera !== undefined) {
     stage.view = kept.camera;

@@ -333,5 +333,6 @@ class DebugAdapter:
         except (OSError, ValueError) as error:
             self._respond(request, problem=str(error))
             return
-        self._respond(request, scene_document(run, written))
+        line = None if self._paused is None else self._paused.line
+        self._respond(request, scene_document(run, written, line))
         path.unlink(missing_ok=True)

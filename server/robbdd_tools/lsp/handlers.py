@@ -68,6 +68,7 @@ def _register_documents(server: RobbddServer) -> None:
         able = cast("dict[str, object]", wanted) if isinstance(wanted, dict) else {}
         ls.shows_pictures = able.get("pictures") is True
         ls.shows_replays = able.get("replay") is True
+        ls.debugs_scenarios = able.get("debugging") is True
         ls.runs_studies = able.get("studies") is True
         ls.shows_history = able.get("history") is True
         ls.trusted = able.get("trusted") is not False

@@ -26,18 +26,22 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
+DEBUG = "robbdd.debugScenario"
+"""Command of clients that announce ``debugging``: it begins to debug an execution, with breakpoints on clauses."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Runnable:
     """A scenario variant, or an execution of one, that can be run.
 
-    ``choice`` are the options of the command that runs it. ``number`` is the number of its scenarios, if known.
-    ``variant`` is the IRI of the variant; ``None`` for an execution.
+    ``choice`` are the options of the command that runs it, ``debugged`` those of the command that debugs it. ``number``
+    is the number of its scenarios, if known. ``variant`` is the IRI of the variant; ``None`` for an execution.
     """
 
     definition: Definition
     title: str
     choice: dict[str, Any]
+    debugged: dict[str, Any]
     number: int | None
     rate: PassRate | None
     variant: str | None = None
@@ -66,7 +70,8 @@ def register_lenses(server: RobbddServer) -> None:
             found: list[types.CodeLens] = []
             for one in _runnable(snapshot, uri, ls.findings_of(snapshot, uri)):
                 place = ls.convert.range(document, one.definition.span)
-                found += [types.CodeLens(place, command) for command in _lenses(one, one.variant in recorded)]
+                commands = _lenses(one, recorded=one.variant in recorded, debugs=ls.debugs_scenarios)
+                found += [types.CodeLens(place, command) for command in commands]
                 if one.rate is not None:
                     # A lens without a command is plain text.
                     words = types.Command(title=one.rate.label, command="")
@@ -90,17 +95,22 @@ def _runnable(snapshot: Snapshot, uri: str, findings: Findings) -> Iterator[_Run
     for one in variants_of(snapshot, uri):
         title = f"Run scenario {one.definition.symbol.name}"
         rate = pass_rate(snapshot, one, findings)
-        yield _Runnable(one.definition, title, {"scenario": one.iri}, number_of_scenarios(one), rate, one.iri)
+        debugged = {"scenario": one.iri, "variant": one.iri}
+        yield _Runnable(one.definition, title, {"scenario": one.iri}, debugged, number_of_scenarios(one), rate, one.iri)
     for one in executions_of(snapshot, uri):
         title = f"Run execution {one.definition.symbol.name}"
         choice = {"only": [{"variant": one.variant.iri, "execution": one.iri}]}
+        debugged = {"scenario": one.iri, "variant": one.variant.iri}
         rate = execution_rate(snapshot, one, findings)
-        yield _Runnable(one.definition, title, choice, number_of_scenarios(one.variant), rate)
+        yield _Runnable(one.definition, title, choice, debugged, number_of_scenarios(one.variant), rate)
 
 
-def _lenses(one: _Runnable, recorded: bool) -> Iterator[types.Command]:
+def _lenses(one: _Runnable, *, recorded: bool, debugs: bool) -> Iterator[types.Command]:
     rate = one.rate
     yield one.command("Run", RUN)
+    if debugs:
+        target = {"uri": one.definition.uri, **one.debugged, "count": one.number}
+        yield types.Command(title="Debug", command=DEBUG, arguments=[target])
     if rate is not None and rate.passed < rate.run:
         yield one.command(f"Rerun {rate.run - rate.passed} failed", RERUN)
     yield one.command("Record", RECORD)

@@ -164,10 +164,11 @@ def scenario_values(spec: ScenarioSpec) -> dict[str, object]:
     return {plain_name(name): value for name, value in spec.values.items()}
 
 
-def scene_document(run: Run, written: Mapping[str, Any]) -> dict[str, Any]:
+def scene_document(run: Run, written: Mapping[str, Any], line: int | None = None) -> dict[str, Any]:
     """Return the debugged execution so far in the form of ``docs/schemas/trace.schema.json``.
 
-    The clauses have no places. ``written`` is what ``WriteScene`` has written.
+    The clauses have no places. ``written`` is what ``WriteScene`` has written, ``line`` the feature line of the clause
+    at which the execution has paused.
     """
     (spec,), parts = run.manifest.scenarios, written["parts"]
     entries = run.progress.scenario_json(0)["clauses"]
@@ -188,6 +189,7 @@ def scene_document(run: Run, written: Mapping[str, Any]) -> dict[str, Any]:
             }
             for clause, entry in zip(spec.clauses, entries, strict=True)
         ],
+        "paused_at": next((number for number, clause in enumerate(spec.clauses) if clause.line == line), None),
         "source": None,
     }
 

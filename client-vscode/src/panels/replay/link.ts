@@ -24,10 +24,10 @@ export interface Moment {
 const TEXTS = ["model", "clause", "variant"] as const;
 const COUNTS = ["run", "index", "variation", "repetition", "seed"] as const;
 
-/** The moment of a trace; undefined if the server is too old to name its execution. */
+/** The moment of a trace; undefined if its run is not stored. */
 export function momentOf({ run, scenario, clauses, duration }: Trace, model: string, time: number, clause: number): Moment | undefined {
   const { index, variant, variation, repetition, seed } = scenario;
-  if (seed === undefined || run <= 0) {
+  if (run <= 0) {
     return undefined;
   }
   const moment = Math.round(Math.min(duration, Math.max(0, time)) * 1000) / 1000;

@@ -15,7 +15,14 @@ export interface Recording {
 }
 
 export type ToReplay =
-  | { readonly type: "trace"; readonly recording: Recording; readonly trace: Trace; readonly clause?: string; readonly time?: number }
+  | {
+      readonly type: "trace";
+      readonly recording: Recording;
+      readonly trace: Trace;
+      /** The clause to select, by its IRI or by its number. */
+      readonly clause?: string | number;
+      readonly time?: number;
+    }
   | { readonly type: "clause"; readonly clause: string }
   /** Show a time, s. */
   | { readonly type: "time"; readonly time: number }

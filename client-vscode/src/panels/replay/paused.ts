@@ -69,8 +69,9 @@ export class PausedScene implements vscode.Disposable {
 
   private send(): void {
     if (this.trace !== undefined) {
-      const recording = { uri: this.trace.folder };
-      this.panel?.post({ type: "trace", recording, trace: this.trace, time: this.trace.duration });
+      const { folder, duration: time, paused_at: clause } = this.trace;
+      const selected = clause === undefined || clause === null ? {} : { clause };
+      this.panel?.post({ type: "trace", recording: { uri: folder }, trace: this.trace, time, ...selected });
     }
   }
 }

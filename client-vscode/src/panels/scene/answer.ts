@@ -1,43 +1,13 @@
 // The server's answer to `robbdd/scene`: scene instances before anything moves. Metres, world frame; docs/schemas/scene.schema.json.
-import { type Location, isLocation } from "../../places";
-import { isRecord } from "../../values";
+import type * as answers from "../../answers/scene";
+import type { Immutable } from "../../immutable";
 import type { PackedArray, Trace } from "../replay/answer";
 
-export interface SceneFault {
-  readonly kind: string;
-  readonly reason: string;
-  readonly source: Location | null;
-}
+export { isScenePicture } from "../../answers/validators.mjs";
 
-export interface DrawnScene extends Pick<Trace, "shapes" | "meshes" | "bodies" | "workspaces"> {
-  readonly iri: string;
-  readonly name: string;
-  /** Elements at sampled poses. */
-  readonly sampled: readonly string[];
-  /** Elements that are not drawn. */
-  readonly missing: readonly string[];
-  readonly faults: readonly SceneFault[];
-}
-
-export interface ScenePicture {
-  readonly uri: string;
-  /** Why the scenes are older than the text or missing; null if they are up to date. */
-  readonly problem: string | null;
-  readonly scenes: readonly DrawnScene[];
-}
-
-const LISTS = ["shapes", "meshes", "bodies", "workspaces", "sampled", "missing", "faults"];
-
-/** Whether an answer has the form of this version: its parts, but not every number. */
-export function isScenePicture(value: unknown): value is ScenePicture {
-  return (
-    isRecord(value) &&
-    typeof value["uri"] === "string" &&
-    (value["problem"] === null || typeof value["problem"] === "string") &&
-    Array.isArray(value["scenes"]) &&
-    value["scenes"].every(isScene)
-  );
-}
+export type ScenePicture = Immutable<answers.ScenePicture>;
+export type DrawnScene = ScenePicture["scenes"][number];
+export type SceneFault = DrawnScene["faults"][number];
 
 /** Remark on a picture that is older than the text; empty if it is up to date. */
 export function remark({ problem, scenes }: ScenePicture): string {
@@ -61,7 +31,9 @@ export function still({ shapes, meshes, bodies, workspaces }: DrawnScene): Trace
   return {
     run: 0,
     folder: "",
-    scenario: { index: 0, name: "", values: "", variant: "", variation: 0, repetition: 1, verdict: "unknown" },
+    scenario: {
+      index: 0, name: "", values: "", story: "", variant: "", variation: 1, repetition: 1, seed: 0, verdict: "unknown", trace: false,
+    },
     duration: 0,
     remark: "",
     shapes,
@@ -72,18 +44,4 @@ export function still({ shapes, meshes, bodies, workspaces }: DrawnScene): Trace
     events: [],
     clauses: [],
   };
-}
-
-function isScene(value: unknown): value is DrawnScene {
-  return (
-    isRecord(value) &&
-    typeof value["iri"] === "string" &&
-    typeof value["name"] === "string" &&
-    LISTS.every((name) => Array.isArray(value[name])) &&
-    (value["faults"] as unknown[]).every(isFault)
-  );
-}
-
-function isFault(value: unknown): value is SceneFault {
-  return isRecord(value) && typeof value["reason"] === "string" && (value["source"] === null || isLocation(value["source"]));
 }
