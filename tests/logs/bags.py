@@ -15,9 +15,16 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 ROS1, ROS2 = get_typestore(Stores.ROS1_NOETIC), get_typestore(Stores.ROS2_HUMBLE)
 TRINARY = "bdd_ros2_interfaces/msg/Trinary"
 ROS2.register(get_types_from_msg("uint8 FALSE=0\nuint8 TRUE=1\nuint8 UNKNOWN=2\nuint8 value", TRINARY))
+CONTACTS = "gazebo_msgs/msg/ContactsState"
 MODELS, VISION = "gazebo_msgs/msg/ModelStates", "vision_msgs/msg/"
 PACKAGES = {
     MODELS: "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist",
+    "gazebo_msgs/msg/ContactState": (
+        "string info\nstring collision1_name\nstring collision2_name\ngeometry_msgs/Wrench[] wrenches\n"
+        "geometry_msgs/Wrench total_wrench\ngeometry_msgs/Vector3[] contact_positions\n"
+        "geometry_msgs/Vector3[] contact_normals\nfloat64[] depths"
+    ),
+    CONTACTS: "std_msgs/Header header\ngazebo_msgs/ContactState[] states",
     f"{VISION}ObjectHypothesis": "string class_id\nfloat64 score",
     f"{VISION}ObjectHypothesisWithPose": "ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose",
     f"{VISION}BoundingBox3D": "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size",
@@ -124,6 +131,40 @@ def joints(
         )
 
     return Message(topic, stamp if received is None else received, "sensor_msgs/msg/JointState", make)
+
+
+def wrench(topic: str, force: Sequence[float], stamp: float) -> Message:
+    """A force (N) and no moment."""
+
+    def make(store: Any) -> Any:
+        vector = store.types["geometry_msgs/msg/Vector3"]
+        both = store.types["geometry_msgs/msg/Wrench"](force=vector(*map(float, force)), torque=vector(0.0, 0.0, 0.0))
+        return store.types["geometry_msgs/msg/WrenchStamped"](header=header(store, stamp, "tool"), wrench=both)
+
+    return Message(topic, stamp, "geometry_msgs/msg/WrenchStamped", make)
+
+
+def contact(topic: str, touching: bool, received: float) -> Message:
+    """The contacts of a simulator's sensor: one or none."""
+
+    def make(store: Any) -> Any:
+        types = store.types
+        vector = types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
+        none = types["geometry_msgs/msg/Wrench"](force=vector, torque=vector)
+        one = types["gazebo_msgs/msg/ContactState"](
+            info="",
+            collision1_name="pad",
+            collision2_name="cube",
+            wrenches=[],
+            total_wrench=none,
+            contact_positions=[],
+            contact_normals=[],
+            depths=np.empty(0),
+        )
+        states = [one] if touching else []
+        return types[CONTACTS](header=header(store, received, "world"), states=states)
+
+    return Message(topic, received, CONTACTS, make)
 
 
 def poses(topic: str, places: Sequence[Sequence[float]], *, stamp: float) -> Message:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,8 +11,9 @@ import numpy as np
 
 from robbdd_tools.agent.log_arms import find_arms
 from robbdd_tools.agent.log_frames import Frames
+from robbdd_tools.agent.log_grips import LogGrips, grip_signals
 from robbdd_tools.catalog.settings import written
-from robbdd_tools.judging.log_names import elements_of, local_name, occurrences_of
+from robbdd_tools.judging.log_names import elements_of, occurrences_of
 from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.traces.codec import Evidence
@@ -24,13 +25,11 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.log_arms import LoggedArm
     from robbdd_tools.agent.log_frames import Poses
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.logs.log_contents import LogContents, TextStamp, Truths
+    from robbdd_tools.logs.log_contents import LogContents, Truths
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
 
 START, END = "scenario-start", "scenario-end"
-HOLDS = "holds"
-"""Last part of the topic with the name of the object that an agent holds, or with an empty text: ``/panda/holds``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +47,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     Positions are those of the log in the frame of the world; the origin of a frame is that of the element's model. The
     trace has a sample at each observation of a frame that is used, at most ``request.rate`` per second, at each event
     and in each gap. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model, and
-    ``NoElement`` if the request names something else.
+    ``NoElement`` or ``NoGripSignal`` if the request names something else.
     """
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
     cast = cast_scene(spec.scene, staging)
@@ -57,7 +56,9 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     elements = (*cast.objects, *cast.agents)
     arms = find_arms(cast, contents, request, remarks)
     frames = Frames(spec, cast, contents, request, remarks, arms)
-    times = _times([*frames.observed(), *(arm.times() for arm in arms.values())], events, contents, request)
+    grips, signals = LogGrips(cast, contents, frames.of, request.max_gap), grip_signals(request.grips, cast)
+    observed = [*frames.observed(), *(arm.times() for arm in arms.values()), *grips.observed(signals)]
+    times = _times(observed, events, contents, request)
     joints = {agent: arm.positions(times, request.max_gap) for agent, arm in arms.items()}
     poses = {element: found for element in cast.objects if (found := frames.object_poses(element, times)) is not None}
     for agent in cast.agents:
@@ -66,13 +67,15 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
             found = _tool(arms[agent], joints[agent], frames.base_poses(agent, times))
         if found is not None:
             poses[agent] = found
-    names = tuple(poses)
+    names = (*poses, *(name for name in dict.fromkeys(one.held for one in signals) if name and name not in poses))
+    nowhere = np.full((len(times), 3), np.nan), np.full((len(times), 4), np.nan)
+    every = [poses.get(name, nowhere) for name in names]
     trace = Trace(
         names,
         times,
-        np.stack([place for place, _ in poses.values()], axis=1) if poses else np.empty((len(times), 0, 3)),
-        np.stack([turn for _, turn in poses.values()], axis=1) if poses else np.empty((len(times), 0, 4)),
-        grips=_grips(cast, names, frames, contents.texts, times),
+        np.stack([place for place, _ in every], axis=1) if every else np.empty((len(times), 0, 3)),
+        np.stack([turn for _, turn in every], axis=1) if every else np.empty((len(times), 0, 4)),
+        grips=grips.held(signals, names, times, poses),
         events=events,
         settings={pair: written(value) for pair, value in cast.judged.items()},
         outlines={name: outline_of(model) for name, model in cast.objects.items()},
@@ -136,26 +139,3 @@ def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
     """Return the last reported truth at each time; NaN before the first report."""
     rows = np.searchsorted(truths.times, times, side="right") - 1
     return np.where(rows < 0, np.nan, truths.values[np.maximum(rows, 0)])
-
-
-def _grips(
-    cast: Cast, names: Sequence[str], frames: Frames, texts: Iterable[TextStamp], times: FloatArray
-) -> dict[str, FloatArray]:
-    """Return the objects that each agent holds, (n, len(names)), for the agents about which the log reports it."""
-    found: dict[str, FloatArray] = {}
-    known = {word: name for name in names for word in (name, local_name(name), frames.of.get(name, name))}
-    for agent in cast.agents:
-        own = [one for one in texts if one.topic.strip("/").split("/")[-2:] == [local_name(agent), HOLDS]]
-        if not own:
-            continue
-        record = np.zeros((len(times), len(names)))
-        # Before its first message, it is unknown what the agent holds.
-        record[times < own[0].time] = np.nan
-        for one, until in zip(own, [*(later.time for later in own[1:]), np.inf], strict=True):
-            rows = (times >= one.time) & (times < until)
-            if one.text.strip() in known:
-                record[rows, names.index(known[one.text.strip()])] = 1.0
-            elif one.text.strip():
-                record[rows] = np.nan
-        found[agent] = record
-    return found

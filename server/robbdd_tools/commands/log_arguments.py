@@ -27,6 +27,8 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--joint", metavar="[AGENT/]JOINT=NAME", type=_pair, action="append", help=text)
     text = "the title of a table's column (time, frame, x, y, z, qw, qx, qy, qz, parent, event); repeats"
     log.add_argument("--column", metavar="NAME=TITLE", type=_pair, action="append", help=text)
+    text = "a signal that the agent holds something: 'ur10=/vacuum', 'ur10/cube1=joint finger above 5 mm'; repeats"
+    log.add_argument("--grip", metavar="AGENT[/OBJECT]=SIGNAL", type=_grip, action="append", help=text)
     log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
     text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
     log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
@@ -58,6 +60,7 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
         dict(options.joints or ()),
         dict(options.joint or ()),
         dict(options.column or ()),
+        tuple(options.grip or ()),
     )
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)
@@ -69,6 +72,16 @@ def _pair(text: str) -> tuple[str, str]:
     if not (name and separator and value):
         raise argparse.ArgumentTypeError(f"'{text}' must be NAME=VALUE, for example cube1=camera/cube")
     return name, value
+
+
+def _grip(text: str) -> str:
+    from robbdd_tools.judging.grip_signals import read_grip_signal
+
+    try:
+        read_grip_signal(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
 
 
 def _uncertainty(text: str) -> tuple[str, float]:

@@ -70,6 +70,7 @@ class LogContents:
     - ``texts``: the texts on all topics, in order of time.
     - ``truths``: maps a topic of truth values to them.
     - ``joints``: maps a topic of joint states, and the name of a joint in them, to its states.
+    - ``forces``: maps a topic of wrenches to the sizes of their forces, N, as ``positions``.
     - ``end``: the time of the last message, s since the first.
     - ``remarks``: sentences on how the log was read, for example a clock offset that was corrected.
     """
@@ -80,6 +81,7 @@ class LogContents:
     remarks: tuple[str, ...] = ()
     truths: Mapping[str, Truths] = field(default_factory=dict[str, Truths])
     joints: Mapping[str, Mapping[str, JointTrack]] = field(default_factory=dict[str, Mapping[str, JointTrack]])
+    forces: Mapping[str, JointTrack] = field(default_factory=dict[str, JointTrack])
 
 
 @dataclass

@@ -39,7 +39,7 @@ def read_log(path: Path, columns: Mapping[str, str] | None = None) -> LogContent
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:
-    if not (found.tracks or found.texts or found.truths or found.joints):
+    if not (found.tracks or found.texts or found.truths or found.joints or found.forces):
         raise UnreadableLog(
             f"{path} contains no message that can be judged: record transforms, poses, joint states or texts of events"
         )

@@ -15,6 +15,12 @@ DEFINITIONS = {
         f"{_HEADER}\nvision_msgs/ObjectHypothesisWithPose[] results\nvision_msgs/BoundingBox3D bbox\nstring id"
     ),
     "vision_msgs/msg/Detection3DArray": f"{_HEADER}\nvision_msgs/Detection3D[] detections",
+    "gazebo_msgs/msg/ContactState": (
+        "string info\nstring collision1_name\nstring collision2_name\ngeometry_msgs/Wrench[] wrenches\n"
+        "geometry_msgs/Wrench total_wrench\ngeometry_msgs/Vector3[] contact_positions\n"
+        "geometry_msgs/Vector3[] contact_normals\nfloat64[] depths"
+    ),
+    "gazebo_msgs/msg/ContactsState": f"{_HEADER}\ngazebo_msgs/ContactState[] states",
     "gazebo_msgs/msg/ModelStates": "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist",
     "gazebo_msgs/msg/LinkStates": "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist",
 }

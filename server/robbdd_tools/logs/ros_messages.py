@@ -16,6 +16,7 @@ from robbdd_tools.logs.pose_lists import PoseLists
 MIN_OFFSET = 1.0
 """Seconds between the clocks of headers and of reception from which they count as different clocks."""
 STATIC = "tf_static"
+FORCE = "force"
 WORLD = "world"
 """Frame of the poses of a simulator."""
 
@@ -35,6 +36,7 @@ class RosContents:
         """Poses without headers, by the time of reception."""
         self.joints = JointBuilder()
         self._received_joints = JointBuilder()
+        self._wrenches = JointBuilder()
 
     def transforms(self, topic: str, received: int, message: Any) -> None:
         """Take the transforms of ``TFMessage``; those of ``/tf_static`` hold at all times."""
@@ -122,6 +124,18 @@ class RosContents:
         builder = self.joints if stamp else self._received_joints
         builder.add(topic, stamp or received, message.name, message.position, message.effort)
 
+    def wrench(self, topic: str, received: int, message: Any) -> None:
+        """Take the size of a force. Its time is that of the header or, without one, of reception."""
+        stamp, force = _stamp(message.header.stamp), message.wrench.force
+        if stamp:
+            self.offsets.append(received - stamp)
+        self._wrenches.add(topic, stamp or received, [FORCE], [math.hypot(force.x, force.y, force.z)])
+
+    def contacts(self, topic: str, received: int, message: Any) -> None:
+        """Take whether a contact sensor reports a contact, as a truth value."""
+        found = message.states if hasattr(message, "states") else message.contacts
+        self.truths.setdefault(topic, []).append((received, 1.0 if len(found) else -1.0))
+
     def goal_states(self, topic: str, received: int, message: Any) -> None:
         """Take the states of an action's goals."""
         found: list[tuple[str, int, GoalState]] = []
@@ -142,7 +156,7 @@ class RosContents:
         truths = {topic: sorted((time - shift, one) for time, one in found) for topic, found in self.truths.items()}
         stamps = [*self.builder.bounds(), *(time - shift for time in self._received.bounds())]
         stamps += [*self.joints.bounds(), *(time - shift for time in self._received_joints.bounds())]
-        stamps += [time for time, _, _ in texts]
+        stamps += [*self._wrenches.bounds(), *(time for time, _, _ in texts)]
         stamps += [time for found in truths.values() for time, _ in found]
         begin, end = min(stamps, default=0), max(stamps, default=0)
         tracks = self.builder.tracks(begin) | self._received.tracks(begin + shift)
@@ -152,7 +166,8 @@ class RosContents:
             (end - begin) / 1e9,
             (*self.remarks, *self.lists.remarks(), *self.goals.remarks, *self.joints.remarks),
             {topic: _truths(found, begin) for topic, found in truths.items()},
-            self.joints.tracks(begin) | self._received_joints.tracks(begin + shift),
+            self._received_joints.tracks(begin + shift) | self.joints.tracks(begin),
+            {topic: found[FORCE] for topic, found in self._wrenches.tracks(begin).items()},
         )
 
     def _shift(self) -> int:
@@ -183,6 +198,9 @@ READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
     "vision_msgs/msg/Detection3D": RosContents.detection,
     "vision_msgs/msg/Detection3DArray": RosContents.detections,
     "sensor_msgs/msg/JointState": RosContents.joint_states,
+    "geometry_msgs/msg/WrenchStamped": RosContents.wrench,
+    "gazebo_msgs/msg/ContactsState": RosContents.contacts,
+    "ros_gz_interfaces/msg/Contacts": RosContents.contacts,
     "std_msgs/msg/String": RosContents.text,
     "std_msgs/msg/Bool": RosContents.truth,
     "bdd_ros2_interfaces/msg/Trinary": RosContents.trinary,

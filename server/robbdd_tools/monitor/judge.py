@@ -20,7 +20,7 @@ from robbdd_tools.monitor.time import (
     occurrence_times,
     window,
 )
-from robbdd_tools.monitor.unobserved import Unobserved
+from robbdd_tools.monitor.unobserved import Unobserved, no_grip
 from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Verdict, conjunction, unknown
 
@@ -206,10 +206,16 @@ class WindowEvidence:
 
         Raises ``KeyError``, and ``Unobserved`` if it was not observed throughout the window.
         """
-        grips = self.trace.grips[agent][self._rows, self.trace.column(name)]
+        trace = self.trace
+        if trace.log and (agent not in trace.grips or name not in trace.names):
+            raise Unobserved(no_grip(agent, name if agent in trace.grips else ""))
+        grips = trace.grips[agent][self._rows, trace.column(name)]
         missing = np.isnan(grips)
         if missing.any():
-            raise Unobserved(f"it was not observed what {agent} held at {self.times[int(np.argmax(missing))]:.2f} s")
+            row = int(np.argmax(missing))
+            unseen = np.isnan(trace.positions[self._rows, trace.column(name), 0])[row]
+            also = f", nor where {name} was" if unseen else ""
+            raise Unobserved(f"it was not observed what {agent} held at {self.times[row]:.2f} s{also}")
         return grips
 
     def reach(self, agent: str, name: str) -> FloatArray:

@@ -24,6 +24,7 @@ class LogRequest:
     - ``joint_topics``: maps an agent to the topic of the states of its joints.
     - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
     - ``columns``: maps the name of a column of a table to its title in the file.
+    - ``grips``: signals that say when an agent holds something, as ``judging/grip_signals`` reads them.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -38,3 +39,4 @@ class LogRequest:
     joint_topics: Mapping[str, str] = field(default_factory=dict[str, str])
     joints: Mapping[str, str] = field(default_factory=dict[str, str])
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
+    grips: tuple[str, ...] = ()

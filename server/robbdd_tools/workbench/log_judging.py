@@ -53,6 +53,7 @@ class LogNames:
     joint_topics: Mapping[str, str] = field(default_factory=dict[str, str])
     joints: Mapping[str, str] = field(default_factory=dict[str, str])
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
+    grips: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +83,7 @@ def judge_log(
     joint_topics: Mapping[str, str] | None = None,
     joints: Mapping[str, str] | None = None,
     columns: Mapping[str, str] | None = None,
+    grips: Sequence[str] = (),
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -100,6 +102,7 @@ def judge_log(
     - ``joint_topics``: maps an agent to the topic of its joint states.
     - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
     - ``columns``: maps the name of a column of a table (``time``, ``frame``, ``x`` …) to its title in the file.
+    - ``grips``: signals that say when an agent holds something: ``("ur10=/vacuum", "ur10=joint finger above 5 mm")``.
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
     Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
@@ -117,6 +120,7 @@ def judge_log(
         dict(joint_topics or {}),
         dict(joints or {}),
         dict(columns or {}),
+        tuple(grips),
     )
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
@@ -162,6 +166,7 @@ class LogJudgement:
             dict(names.joint_topics),
             dict(names.joints),
             dict(names.columns),
+            names.grips,
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)

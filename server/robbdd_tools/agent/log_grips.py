@@ -1,0 +1,178 @@
+"""What agents hold, by the reports of a log or by declared signals. What is not observed is NaN."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.judging.grip_signals import EFFORT, GripSignal, NoGripSignal, read_grip_signal
+from robbdd_tools.judging.log_names import elements_of, local_name
+from robbdd_tools.logs.joint_tracks import JointTrack, positions_at
+from robbdd_tools.world.extent import outline_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, Outline
+    from robbdd_tools.logs.log_contents import LogContents, TextStamp
+    from robbdd_tools.world.scene import Cast
+
+HOLDS = "holds"
+"""Last part of the topic with the name of the object that an agent holds, or with an empty text: ``/panda/holds``."""
+NEAR = 0.03
+"""Room (m) between the tool and the surface of an object that it holds: errors of cameras and calibrations."""
+
+
+def grip_signals(declared: Iterable[str], cast: Cast) -> tuple[GripSignal, ...]:
+    """Return the declared signals with the CURIEs of agents and objects. Raises ``NoGripSignal`` and ``NoElement``."""
+    found: list[GripSignal] = []
+    for text in declared:
+        one = read_grip_signal(text)
+        (agent,) = elements_of({one.agent: ""}, cast.agents)
+        held = next(iter(elements_of({one.held: ""}, cast.objects)), "") if one.held else ""
+        found.append(GripSignal(agent, held, one.kind, one.source, one.low, one.high))
+    return tuple(found)
+
+
+class LogGrips:
+    """The grips of a log. ``names`` are the bodies of the trace, in the order of the columns."""
+
+    def __init__(self, cast: Cast, contents: LogContents, frames: Mapping[str, str], max_gap: float) -> None:
+        """``frames`` maps elements to their frames, by which a text may name an object."""
+        self._cast = cast
+        self._contents = contents
+        self._frames = frames
+        self._max_gap = max_gap
+
+    def observed(self, signals: Sequence[GripSignal]) -> list[FloatArray]:
+        """Return the times (s) of the messages that the signals are judged by. Raises ``NoGripSignal``."""
+        return [self._track(one).times for one in signals if one.kind != "topic"]
+
+    def held(
+        self,
+        signals: Sequence[GripSignal],
+        names: Sequence[str],
+        times: FloatArray,
+        poses: Mapping[str, tuple[FloatArray, FloatArray]],
+    ) -> dict[str, FloatArray]:
+        """Return what each agent holds at ``times`` (n,), (n, len(names)), for the agents about which it is known.
+
+        All signals of an agent must agree that it holds something. Signals for an object are about this object. For
+        other ones, it is the object at whose surface the tool is; if there are several, it is unknown which one.
+        """
+        found: dict[str, FloatArray] = {}
+        for agent in self._cast.agents:
+            own = [one for one in signals if one.agent == agent]
+            if own:
+                found[agent] = self._declared(agent, own, names, times, poses)
+            elif any(_is_of(one, agent) for one in self._contents.texts):
+                found[agent] = self._reported(agent, names, times)
+        return found
+
+    def _declared(
+        self,
+        agent: str,
+        signals: Sequence[GripSignal],
+        names: Sequence[str],
+        times: FloatArray,
+        poses: Mapping[str, tuple[FloatArray, FloatArray]],
+    ) -> FloatArray:
+        record = np.zeros((len(times), len(names)))
+        for held in dict.fromkeys(one.held for one in signals):
+            truth = _conjunction([self._truth(one, times) for one in signals if one.held == held])
+            if held:
+                record[:, names.index(held)] = truth
+                continue
+            near = self._near(agent, names, poses, len(times))
+            # A candidate is held if it is the only one; a place that is not known may be that of the held object.
+            several = np.nansum(near, axis=1) + np.isnan(near).sum(axis=1) > 1
+            near[several[:, None] & (near > 0)] = np.nan
+            on, unknown = truth[:, None] > 0, np.isnan(truth)[:, None]
+            record = np.maximum(record, np.where(on, near, np.where(unknown & ~(near == 0), np.nan, 0.0)))
+        return record
+
+    def _near(
+        self, agent: str, names: Sequence[str], poses: Mapping[str, tuple[FloatArray, FloatArray]], count: int
+    ) -> FloatArray:
+        """Return 1 where the tool is at an object that can be held, 0 where not, NaN if unknown, (count, names)."""
+        near = np.zeros((count, len(names)))
+        for column, name in enumerate(names):
+            model = self._cast.objects.get(name)
+            if model is None or not model.free:
+                continue
+            if agent not in poses or name not in poses:
+                near[:, column] = np.nan
+                continue
+            distance = np.linalg.norm(poses[name][0] - poses[agent][0], axis=1)
+            within = np.where(distance <= _radius(outline_of(model)) + NEAR, 1.0, 0.0)
+            near[:, column] = np.where(np.isnan(distance), np.nan, within)
+        return near
+
+    def _truth(self, signal: GripSignal, times: FloatArray) -> FloatArray:
+        """Return 1 where a signal says that something is held, 0 where not, NaN where it says nothing, (n,)."""
+        if signal.kind == "topic":
+            truths = self._contents.truths.get(signal.source)
+            if truths is None:
+                raise NoGripSignal(
+                    f"the log has no topic of truth values '{signal.source}'{_listed(self._contents.truths)}"
+                )
+            rows = np.searchsorted(truths.times, times, side="right") - 1
+            values = np.where(rows < 0, np.nan, truths.values[np.maximum(rows, 0)])
+            return np.where(np.isnan(values), np.nan, np.where(values > 0, 1.0, 0.0))
+        track = self._track(signal)
+        values = positions_at(track, times, self._max_gap)
+        within = np.where((values >= signal.low) & (values <= signal.high), 1.0, 0.0)
+        return np.where(np.isnan(values), np.nan, within)
+
+    def _track(self, signal: GripSignal) -> JointTrack:
+        """Return the numbers of a signal. Raises ``NoGripSignal`` with what the log has."""
+        if signal.kind == "wrench":
+            if signal.source not in self._contents.forces:
+                words = f"the log has no wrenches on '{signal.source}'{_listed(self._contents.forces)}"
+                raise NoGripSignal(words)
+            return self._contents.forces[signal.source]
+        every = {name: track for joints in self._contents.joints.values() for name, track in joints.items()}
+        if signal.source not in every:
+            raise NoGripSignal(f"the log has no joint '{signal.source}'{_listed(every)}")
+        track = every[signal.source]
+        if signal.kind != EFFORT:
+            return track
+        known = np.isfinite(track.efforts)
+        if not known.any():
+            raise NoGripSignal(f"the log has no efforts of joint '{signal.source}'")
+        return JointTrack(track.times[known], np.abs(track.efforts[known]), track.efforts[known])
+
+    def _reported(self, agent: str, names: Sequence[str], times: FloatArray) -> FloatArray:
+        """Return what the texts of an agent say."""
+        own = [one for one in self._contents.texts if _is_of(one, agent)]
+        known = {word: name for name in names for word in (name, local_name(name), self._frames.get(name, name))}
+        record = np.zeros((len(times), len(names)))
+        # Before its first message, it is unknown what the agent holds.
+        record[times < own[0].time] = np.nan
+        for one, until in zip(own, [*(later.time for later in own[1:]), np.inf], strict=True):
+            rows = (times >= one.time) & (times < until)
+            if one.text.strip() in known:
+                record[rows, names.index(known[one.text.strip()])] = 1.0
+            elif one.text.strip():
+                record[rows] = np.nan
+        return record
+
+
+def _is_of(one: TextStamp, agent: str) -> bool:
+    return one.topic.strip("/").split("/")[-2:] == [local_name(agent), HOLDS]
+
+
+def _conjunction(truths: Sequence[FloatArray]) -> FloatArray:
+    """Return 0 where a signal is 0, else NaN where one is NaN, else 1."""
+    every = np.stack(truths)
+    return np.where((every == 0).any(axis=0), 0.0, np.where(np.isnan(every).any(axis=0), np.nan, 1.0))
+
+
+def _radius(outline: Outline) -> float:
+    """Return the largest distance (m) of an object's surface from its centre."""
+    return max(float(np.linalg.norm(centre)) + radius for centre, radius in outline)
+
+
+def _listed(names: Iterable[str]) -> str:
+    known = sorted(names)
+    return f"; it has: {', '.join(known[:8])}" if known else ""
