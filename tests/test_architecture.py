@@ -16,7 +16,8 @@ import robbdd_tools
 PACKAGE = Path(robbdd_tools.__file__).parent
 ROOT = PACKAGE.parent.parent
 LAYERS: tuple[frozenset[str], ...] = (
-    frozenset({"base", "catalog.api"}),
+    frozenset({"base"}),
+    frozenset({"catalog.api"}),
     frozenset({"monitor"}),
     frozenset({"catalog"}),
     frozenset({"protocol"}),

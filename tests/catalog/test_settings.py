@@ -34,6 +34,7 @@ def test_the_documented_names_are_known() -> None:
         "height_scale",
         "mass",
         "max_speed",
+        "opening",
         "position_range",
         "release_time",
         "seed",

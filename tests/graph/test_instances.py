@@ -9,7 +9,7 @@ import pytest
 from graph.test_executions import BDDX
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.base.plain import from_plain
-from robbdd_tools.catalog.executable import ArmModel, Law, SceneInstance
+from robbdd_tools.catalog.executable import ArmModel, Law, OpeningModel, SceneInstance
 from robbdd_tools.graph.places import placed_model
 from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
 from robbdd_tools.graph.read.acceptance import read_model
@@ -42,7 +42,8 @@ scene inst (ns=s) bench_mjc {
     model world as mjcf { sys path = 'world.xml' }
     obj set <washers> { model washer_m as urdf { ros pkg = 'parts', path = 'washer.urdf' } }
     obj <washers.washer1> { model special as mjcf { sys path = 'special.xml' } }
-    obj <parts.nut> { model nut_m as mjcf { sys path = 'nut.xml'  map body <g.nut> to "nut" } }
+    obj <parts.nut> { model nut_m as mjcf { sys path = 'nut.xml'  map body <g.nut> to "nut"
+        opening { joint: "lid" closed: 2 mm open: 0.5 deg } } }
     agn <arms.panda> {
         model panda_m as mjcf {
             sys path = 'arm.xml'
@@ -88,6 +89,11 @@ def test_models_belong_to_the_elements_and_to_each_of_a_set() -> None:
 def test_an_arm_has_its_tool_gripper_and_limits_in_si_units() -> None:
     arms = [model.arm for one in instance().elements for model in one.models if model.arm is not None]
     assert arms == [ArmModel("tcp", "grip", 0.04, 0.0, ("a", "b"), 0.08, (0.0, 1.5), (1.0, 2.0))]
+
+
+def test_a_thing_that_opens_has_its_joint_and_positions_with_units() -> None:
+    found = [model.opening for one in instance().elements for model in one.models if model.opening is not None]
+    assert found == [OpeningModel("lid", "2 mm", "0.5 deg")]
 
 
 def test_an_arm_may_leave_its_data_to_its_file() -> None:

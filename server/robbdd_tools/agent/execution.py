@@ -8,9 +8,11 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_run import BehaviourRun, Call, Timing
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.joint_clearance import joint_clearances
+from robbdd_tools.world.passive_joints import opening_records
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -139,8 +141,9 @@ class Execution:
             touches={} if touches is None else touches.peaks(size),
             touch_watched=() if touches is None else touches.watched,
             contacts=forces.contacts(trace.times),
-            immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
+            immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
             outlines=self.course.outlines,
+            openings=opening_records(self.simulation.model, cast.openings, self.simulation.recorder.states[:size]),
         )
 
     def run_behaviour(self, index: int) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from robbdd_tools.agent.log_arms import find_arms
 from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.agent.log_grips import LogGrips, grip_signals
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
 from robbdd_tools.judging.log_names import elements_of, occurrences_of
 from robbdd_tools.logs.transforms import product, rotated
@@ -87,7 +88,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         joint_clearances={
             agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
         },
-        immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
+        immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
     )
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 

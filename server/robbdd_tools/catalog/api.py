@@ -1,7 +1,6 @@
 """Types that describe the words of the language.
 
-Plain data and protocols only: no simulator, graph library or numpy is imported here, so an editor can load the whole
-catalog in a few milliseconds.
+Plain data and protocols only, without a simulator, graph library or numpy: editors load the catalog in milliseconds.
 """
 
 from __future__ import annotations
@@ -14,6 +13,8 @@ from typing import TYPE_CHECKING, Literal, Protocol
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from robbdd_tools.base.articulation import OpeningRecord, PassiveJoint
 
     FloatArray = NDArray[np.float64]
 
@@ -52,8 +53,7 @@ class Slot:
 class Region:
     """An axis-aligned box in the frame of the object that carries a workspace.
 
-    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside, ``walled``; a table's is the space
-    above its top. ``name`` identifies a part of an object (a shelf's board).
+    ``center`` and ``half`` (half edges) in m. A bin's is its inside, ``walled``. ``name`` is that of a shelf's board.
     """
 
     center: Vector
@@ -147,6 +147,10 @@ class Evidence(Protocol):
         """Return how far the joint that is nearest to a limit is from it, as a share of its range, shape (n,)."""
         ...
 
+    def opening(self, name: str) -> OpeningRecord:
+        """Return how far a thing with a joint is open, at each of the n samples."""
+        ...
+
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
         ...
@@ -186,12 +190,9 @@ class Predicate:
       number with a unit, or a variable) or as words. ``aliases`` are other forms with the same meaning and slots.
     - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
     - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.
-    - ``evaluate``: the evaluator. It is ``None`` if this installation cannot judge the predicate. Then its clauses are
-      *unknown* and never pass.
-    - ``quantities``: what the evaluator needs besides poses and grips (``reach``). Quantities are expensive, so they
-      are sampled only in the windows of clauses that need them.
-    - ``duration``: set if the predicate is about the time between the two events of ``from … until …`` instead of the
-      states at samples. Then ``evaluate`` is for plots only.
+    - ``evaluate``: ``None`` if this installation cannot judge the predicate: its clauses are *unknown*, and never pass.
+    - ``quantities``: what the evaluator needs besides poses and grips (``reach``); sampled in its windows only.
+    - ``duration``: of a predicate about the time between the events of ``from … until …``: ``evaluate`` is for plots.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
     """
@@ -256,9 +257,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class ObjectModel:
-    """A kind of object in the simulated world.
-
-    It is used for an object of a scene if the name of the object, or of its set, contains one of ``prefixes``.
+    """A kind of object in the simulated world: for objects whose name, or that of their set, has one of ``prefixes``.
 
     - ``mass``: in kg.
     - ``friction``: the coefficient of sliding friction.
@@ -286,12 +285,13 @@ class ObjectModel:
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
     frame: Vector = (0.0, 0.0, 0.0)
     """Position (m) of the frame that poses in a scene refer to: the body frame of its file, which is arbitrary."""
+    joint: PassiveJoint | None = None
+    """The joint of a moving part of another object, such as a drawer; such a part is not ``free``."""
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries.
 
-        These are the parts whose name the workspace's local name contains (``shelf_upper`` contains ``upper``). If
-        there are none, these are all parts or, without parts, the whole region.
+        These are the parts whose name its name contains (``shelf_upper``), else all parts, else the whole region.
         """
         named = tuple(part for part in self.parts if part.name in workspace.lower())
         return named or self.parts or (() if self.region is None else (self.region,))

@@ -198,6 +198,19 @@ class ModelEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class OpeningModel:
+    """Data about a thing that opens, which replace those found in its model file.
+
+    ``joint`` is a name in the file. ``closed`` and ``open`` are quantities (``5 mm``): the joint positions up to which
+    and from which the thing counts as closed and as open. Empty texts mean that the file decides.
+    """
+
+    joint: str = ""
+    closed: str = ""
+    open: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class ModelSource:
     """The source of a model.
 
@@ -217,6 +230,7 @@ class ModelSource:
     trees: tuple[tuple[str, str], ...] = ()
     arm: ArmModel | None = None
     origin: Origin | None = None
+    opening: OpeningModel | None = None
 
 
 @dataclass(frozen=True, slots=True)

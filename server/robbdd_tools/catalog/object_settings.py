@@ -45,6 +45,8 @@ def object_has(model: ObjectModel, name: str) -> bool:
             return has_belt(model)
         case "height_scale":
             return is_scalable(model)
+        case "opening":
+            return model.joint is not None
         case _:
             return setting_of(name).judges == "object"
 
@@ -53,6 +55,11 @@ def is_scalable(model: ObjectModel) -> bool:
     """Return whether an object is a loose container. A sphere keeps its proportions."""
     round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
     return model.free and model.region is not None and not round_ones
+
+
+def can_move(model: ObjectModel) -> bool:
+    """Return whether an object can move, freely or by its joint."""
+    return model.free or model.joint is not None
 
 
 def has_belt(model: ObjectModel) -> bool:

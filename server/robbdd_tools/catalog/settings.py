@@ -89,6 +89,7 @@ _EVERY = (
         count=2,
     ),
     Setting("height_scale", "", "a bin, tray or shelf", 0.2, 3.0, "height as a multiple of the catalog's"),
+    Setting("opening", "", "a thing with a joint", 0.0, 1.0, "how far it is open at the start: 0 closed, 1 fully open"),
     Setting("belt_speed", "m/s", "a conveyor", 0.01, 0.5, "speed of its belt"),
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("approach_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool as it descends or lowers"),

@@ -39,6 +39,7 @@ WANTED: Mapping[str, tuple[str, ...]] = {
     "tool": ("site", "body"),
     "actuator": ("actuator", "joint"),
     "pads": ("geom", "body"),
+    "joint": ("joint",),
 }
 """Kinds of the parts that an entry of a model may name; the first one is usual."""
 ACCEPTED: Mapping[str, tuple[str, ...]] = {**WANTED, "pads": ("geom", "body", "visual")}
@@ -115,6 +116,8 @@ def _named(model: tree.Model) -> Iterator[PartName]:
         if model.gripper.actuator is not None:
             yield PartName(model, "actuator", model.gripper.actuator)
         yield from (PartName(model, "pads", pad) for pad in model.gripper.pads)
+    if model.opening is not None and model.opening.joint is not None:
+        yield PartName(model, "joint", model.opening.joint)
 
 
 def parts_of(model: tree.Model, folder: Path) -> ModelParts | None:

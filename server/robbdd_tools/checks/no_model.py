@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import listed
+from robbdd_tools.checks.model_name import parts_of
 from robbdd_tools.checks.scene_use import used_elements
 from robbdd_tools.names.elements import Element, Site, elements_of, scene_members
 from robbdd_tools.names.index import language_of
@@ -62,9 +64,10 @@ def gaps_of(scene: Site) -> list[Gap]:
     if any(_may_have_all(instance) for instance in instances):
         return []
     modelled = frozenset[Key]().union(*map(_modelled, instances))
+    bodies = frozenset[str]().union(*map(_bodies, instances))
     found: dict[Span, list[Element]] = {}
     for element in unfit:
-        if element.key not in modelled:
+        if element.key not in modelled and _local(element) not in bodies:
             found.setdefault(place_of(scene, element), []).append(element)
     return [Gap(scene, span, tuple(found[span])) for span in sorted(found)]
 
@@ -118,6 +121,14 @@ def _modelled(instance: Site) -> frozenset[Key]:
         else:
             found.update(element.key for element in elements_of(instance.follow(node.reference)) or ())
     return frozenset(found)
+
+
+def _bodies(instance: Site) -> frozenset[str]:
+    """Return the names of the bodies in the files of a scene instance: a moving part of a model is an object, too."""
+    folder = uri_to_path(instance.uri)
+    models = [node for node in walk(instance.tree) if isinstance(node, tree.Model)] if instance.tree is not None else []
+    files = [] if folder is None else [parts_of(model, folder.parent) for model in models]
+    return frozenset(part.name for file in files if file is not None for part in file.names("body"))
 
 
 def place_of(scene: Site, element: Element) -> Span:

@@ -30,6 +30,7 @@ _ENTRIES = {
     "map body": re.compile(r"\bmap\s+body\s*<[^<>\n]*>\s*to\s*\Z"),
     "tool": re.compile(r"\btool\s*:\s*\Z"),
     "actuator": re.compile(r"\bactuator\s*:\s*\Z"),
+    "joint": re.compile(r"\bjoint\s*:\s*\Z"),
     "pads": re.compile(rf"\bpads\s*:\s*(?:{_TEXT}\s*,\s*)*\Z"),
 }
 _MODEL = re.compile(r"\bmodel\s+[\w-]+\s+(?:as\s+)?(?:mjcf|urdf)\s*\{")

@@ -27,6 +27,7 @@ from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Verdict, conjuncti
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from robbdd_tools.base.articulation import OpeningRecord
     from robbdd_tools.catalog.api import Arguments, FloatArray, Outline, Predicate, Region
     from robbdd_tools.monitor.trace import Trace
 
@@ -176,6 +177,15 @@ class WindowEvidence:
             gap = self._gap(np.isnan(every), float(self.times[int(np.argmax(missing))]))
             raise Unobserved(f"the joints of {agent} were not observed {gap}")
         return shares
+
+    def opening(self, name: str) -> OpeningRecord:
+        """Return how far a thing is open at each sample. Raises ``KeyError``, and ``Unobserved`` for several joints."""
+        record = self.trace.openings.get(name)
+        if record is None:
+            raise KeyError(f"a joint with which {name} opens")
+        if isinstance(record, str):
+            raise Unobserved(record)
+        return replace(record, positions=record.positions[self._rows])
 
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""

@@ -13,6 +13,7 @@ from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.last_iteration import LAST
 
 if TYPE_CHECKING:
+    from robbdd_tools.base.articulation import OpeningRecord
     from robbdd_tools.catalog.api import FloatArray, Outline
 
 
@@ -72,6 +73,8 @@ class Trace:
     - ``gaps``: maps two elements to the distance (m) of their surfaces (n,), NaN where it was not measured.
     - ``joint_clearances``: maps an agent to the smallest distance of its joints from their limits, each as a share of
       the joint's range (n,). An agent without limited joints is missing.
+    - ``openings``: maps a thing with a joint to its joint positions (n,), or to the reason why it is not known how it
+      opens.
     - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
     - ``pending``: the events that could occur again if the execution continued.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
@@ -108,6 +111,7 @@ class Trace:
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     gaps: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     joint_clearances: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
+    openings: Mapping[str, OpeningRecord | str] = field(default_factory=dict[str, "OpeningRecord | str"])
     uncertain: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property

@@ -88,8 +88,19 @@ class Gripper(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Opening(Node):
+    """``opening { joint: "…" closed: 5 mm open: 30 cm }``: of a drawer, a door, a lever."""
+
+    joint: Text | None
+    closed: Number | None
+    closed_unit: str | None
+    open: Number | None
+    open_unit: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Model(Node):
-    """``model name as mjcf { source mappings tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s }``."""
+    """``model name as mjcf { source mappings tool: "…" gripper { … } opening { … } home: (…) rad velocity: … }``."""
 
     name: Name
     kind: str
@@ -97,6 +108,7 @@ class Model(Node):
     mappings: tuple[Mapping, ...]
     tool: Text | None
     gripper: Gripper | None
+    opening: Opening | None
     home: Vector | None
     home_unit: str | None
     velocity: Vector | None

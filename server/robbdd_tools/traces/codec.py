@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from robbdd_tools.base.articulation import OpeningRecord
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.judge import Regions
@@ -23,7 +24,9 @@ class Evidence:
     regions: Regions
 
 
-KINDS: Mapping[str, Any] = {kind.__name__: kind for kind in (Evidence, Trace, Contact, EventStamp, Region)}
+KINDS: Mapping[str, Any] = {
+    kind.__name__: kind for kind in (Evidence, Trace, Contact, EventStamp, Region, OpeningRecord)
+}
 """The dataclasses that may occur; others cannot be restored."""
 
 

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, rank_by_friction
 from robbdd_tools.world.owners import scenery_name
+from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
@@ -124,13 +126,15 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
     for number, scenery in enumerate(() if cast.staging is None else cast.staging.scenery):
         _add_scenery(spec, scenery, f"{scenery_name(number)}/", len(bases))
     for name, model in cast.objects.items():
-        _add_object(spec, name, model, poses[name], len(bases))
+        carrier = cast.objects.get("" if model.joint is None else model.joint.parent)
+        pose = poses[name] if carrier is None or model.joint is None else pose_at_zero(model, carrier)
+        _add_object(spec, name, model, pose, len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
         _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (0.0,))[0])
     pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
     loose = [
-        shape_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
+        shape_name(name, i) for name, model in cast.objects.items() if can_move(model) for i in range(len(model.shapes))
     ]
     pair_pads(spec, pads, loose)
     if cast.staging is not None:
@@ -174,9 +178,13 @@ def _add_room(spec: Any) -> None:
 
 def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: int) -> None:
     turn = list(pose.rotation) or [cos(pose.yaw / 2), 0.0, 0.0, sin(pose.yaw / 2)]
-    body = spec.worldbody.add_body(name=name, pos=list(pose.position), quat=turn)
+    joint = model.joint
+    carrier = spec.worldbody if joint is None or not joint.parent else spec.body(joint.parent)
+    body = carrier.add_body(name=name, pos=list(pose.position), quat=turn)
     if model.free:
         body.add_freejoint()
+    if joint is not None:
+        add_joint(spec, body, name, model)
     volumes = [_volume(shape) for shape in model.shapes]
     for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
         carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.base.articulation import Opening
 from robbdd_tools.catalog.object_settings import is_scalable
 from robbdd_tools.catalog.settings import NORMAL, Numbers, written
 from robbdd_tools.catalog.timetables import timetable_of
 from robbdd_tools.world.belts import belt_speed, belts_of
+from robbdd_tools.world.owners import joint_of_part
 from robbdd_tools.world.scene_configuration import CONTROLLER
 
 if TYPE_CHECKING:
@@ -30,6 +32,12 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
             if name in cast.drops:
                 settings[name, "drop_height"] = cast.drops[name]
+        opening = cast.openings.get(name)
+        if isinstance(opening, Opening):
+            closed, opened = opening.ends
+            joint = model.joint(joint_of_part(opening.part))
+            at_start = float(simulation.data.qpos[joint.qposadr[0]])
+            settings[name, "opening"] = ((at_start - closed) / (opened - closed),)
         for servo in belts_of(model, name)[:1]:
             settings[name, "belt_speed"] = (belt_speed(model, servo),)
         if is_scalable(thing):

@@ -91,13 +91,19 @@ def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | N
             placed.agents[name], placed.poses[name] = robot, base
         return
     model, pose = staging.object_model(name, carries=False), staging.pose(name)
+    for _ in staging.openings():
+        pass  # Raises the faults of openings.
     if model is not None and pose is not None and (other is None or pose == other.pose(name)):
         placed.objects[name], placed.poses[name] = centred(model), pose
 
 
 def simulated(staging: Staging, placed: Placed) -> Simulation:
     """Return a world of the placed elements that has not been stepped. Raises ``SceneError`` if it does not compile."""
-    cast = Cast(placed.objects, placed.agents, {}, {}, None, staging=staging)
+    objects = dict(placed.objects)
+    for name, model in staging.moving_parts():
+        if model.joint is not None and model.joint.parent in objects:
+            objects[name] = centred(model)
+    cast = Cast(objects, placed.agents, {}, {}, None, staging=staging)
     poses = {name: pose for name in placed.objects if (pose := cast.pose(name)) is not None}
     bases = {name: placed.poses[name] for name in placed.agents}
     return Simulation(World(compile_world(cast, bases, poses), cast, bases, poses, SEEDS[0], 0))

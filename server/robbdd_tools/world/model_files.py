@@ -17,10 +17,11 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
+from robbdd_tools.world.moving_parts import is_free, joint_bodies, joint_name, joint_of, name_of_body, rigid_root
 from robbdd_tools.world.urdf_files import is_urdf, read_urdf, speeds
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from robbdd_tools.catalog.api import FloatArray, Vector
     from robbdd_tools.catalog.executable import ModelSource
@@ -109,16 +110,31 @@ def _from_code(source: ModelSource) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
+class MovingPart:
+    """A moving part of an object from a file: the names of its body, of its joint and of its shapes in the file."""
+
+    body: str
+    joint: str
+    model: ObjectModel
+    geoms: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class FromFile:
     """An object from its file; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file.
 
-    ``geoms`` are the names in the file of the model's shapes, in their order.
+    ``geoms`` are the names in the file of the model's shapes, in their order. ``parts`` are its moving parts, each
+    after the one that carries it. ``body`` and ``joint`` are the names in the file of its own body and of the joint on
+    which it moves, if it has one.
     """
 
     model: ObjectModel
     position: FloatArray
     rotation: FloatArray
     geoms: tuple[str, ...]
+    body: str
+    joint: str
+    parts: tuple[MovingPart, ...]
 
 
 def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
@@ -127,42 +143,82 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     It consists of the collision shapes of the body and of everything fixed to it. Boxes, spheres and cylinders aligned
     with the body are kept; any other shape becomes its bounding box. It can move if the file gives it a free joint or,
     in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else the
-    space above it.
+    space above it. Bodies with joints are moving parts; their workspaces are box sites.
     """
     model = compiled(spec, source)
     body = _body(model, source, body_name)
     data: Any = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    own = [index for index in range(model.nbody) if _belongs(model, index, body)]
-    geoms = [
-        g
-        for g in range(model.ngeom)
-        if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
-    ]
-    if not geoms:
-        raise SceneError(f"the body '{model.body(body).name}' has no collision shape", origin=source.origin)
-    shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
-    low, high = bounds_of(shapes)
-    joint = int(model.body_jntadr[body])
-    free = joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)
-    if source.format == "urdf":
-        free = float(model.body_mass[body]) > 0
-    region = _workspace(model, data, own, body, low, high) if carries or not free else None
+    moving = tuple(joint_bodies(model, body))
+    sites = _sites(model, data, (body, *moving), body)
+    parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
+    main = _Rigid(model, data, body, body, source)
+    low, high = bounds_of(main.shapes)
+    free = is_free(model, body) if source.format != "urdf" else float(model.body_mass[body]) > 0
+    jointed = not free and bool(int(model.body_jntnum[body]))
+    own = next((region for region in sites.get(body, ()) if not region.name and (carries or not free)), None)
+    if own is None and (carries or not free) and not sites and not jointed:
+        own = space_above(low, high)
     chosen = ObjectModel(
         name=source.iri,
         prefixes=(),
-        shapes=shapes,
-        mass=max(float(model.body_subtreemass[body]), 1e-3),
-        friction=float(model.geom_friction[geoms[0], 0]),
+        shapes=main.shapes,
+        mass=max(main.mass, 1e-3),
+        friction=float(model.geom_friction[main.geoms[0], 0]),
         free=free,
-        graspable=free and not carries,
+        graspable=free and not carries and not parts,
         rest_height=-float(low[2]),
-        color=_color(model.geom_rgba[geoms[0]]),
+        color=_color(model.geom_rgba[main.geoms[0]]),
         doc=f"from {source.name}",
-        region=region,
+        region=own,
+        parts=tuple(region for region in sites.get(body, ()) if region.name),
+        joint=joint_of(model, data, body, 0, source) if jointed else None,
     )
-    names = tuple(str(model.geom(geom).name) for geom in geoms)
-    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), names)
+    name, joint = name_of_body(model, body), joint_name(model, body) if jointed else ""
+    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts)
+
+
+class _Rigid:
+    """The collision shapes of a body and of everything fixed to it, in the frame of the body, and their mass (kg)."""
+
+    def __init__(self, model: Any, data: Any, body: int, root: int, source: ModelSource) -> None:
+        """Raises ``SceneError`` if it has no collision shape."""
+        own = [index for index in range(model.nbody) if rigid_root(model, index, root) == body]
+        self.geoms = [
+            g
+            for g in range(model.ngeom)
+            if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
+        ]
+        if not self.geoms:
+            raise SceneError(f"the body '{model.body(body).name}' has no collision shape", origin=source.origin)
+        self.shapes = tuple(_shape(model, data, geom, body) for geom in self.geoms)
+        self.names = tuple(str(model.geom(geom).name) for geom in self.geoms)
+        self.mass = float(sum(model.body_mass[index] for index in own))
+
+
+def _part(
+    model: Any, data: Any, body: int, root: int, source: ModelSource, sites: Mapping[int, tuple[Region, ...]]
+) -> MovingPart:
+    rigid = _Rigid(model, data, body, root, source)
+    parent = rigid_root(model, int(model.body_parentid[body]), root)
+    assert parent is not None, "a moving part is below its object"
+    regions = sites.get(body, ())
+    made = ObjectModel(
+        name=source.iri,
+        prefixes=(),
+        shapes=rigid.shapes,
+        mass=max(rigid.mass, 1e-3),
+        friction=float(model.geom_friction[rigid.geoms[0], 0]),
+        free=False,
+        graspable=False,
+        rest_height=0.0,
+        color=_color(model.geom_rgba[rigid.geoms[0]]),
+        doc=f"a moving part from {source.name}",
+        region=next((region for region in regions if not region.name), None),
+        parts=tuple(region for region in regions if region.name),
+        joint=joint_of(model, data, body, parent, source),
+    )
+    return MovingPart(name_of_body(model, body), joint_name(model, body), made, rigid.names)
 
 
 def compiled(spec: Any, source: ModelSource) -> Any:
@@ -183,16 +239,9 @@ def _body(model: Any, source: ModelSource, name: str) -> int:
     return names.index(name) + 1 if name else 1
 
 
-def _belongs(model: Any, index: int, body: int) -> bool:
-    while index > 0 and index != body:
-        index = int(model.body_parentid[index])
-    return index == body
-
-
 def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
     """Return a collision shape in the frame of a body."""
     frame = data.xmat[body].reshape(3, 3)
-    mujoco.mj_kinematics(model, data)
     turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
     center = frame.T @ (data.geom_xpos[geom] - data.xpos[body])
     kind = _KINDS.get(int(model.geom_type[geom]))
@@ -209,13 +258,27 @@ def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
     return Shape(ShapeKind.BOX, _vector(half), _vector(center + turn @ box[:3]))
 
 
-def _workspace(model: Any, data: Any, own: list[int], body: int, low: FloatArray, high: FloatArray) -> Region:
+def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[int, tuple[Region, ...]]:
+    """Map the bodies of an object that move by themselves to the workspaces that are sites in the file.
+
+    An object with moving parts may have several: the part of a site's name before 'workspace' is the region's name,
+    unless there is only one site. An object without moving parts has only the first one.
+    """
+    found: list[tuple[int, Region]] = []
     for site in range(model.nsite):
-        if str(model.site(site).name).endswith(SITE) and model.site_bodyid[site] in own:
-            frame = data.xmat[body].reshape(3, 3)
-            center = frame.T @ (data.site_xpos[site] - data.xpos[body])
-            return Region(_vector(center), _vector(model.site_size[site]))
-    return space_above(low, high)
+        name = str(model.site(site).name)
+        body = rigid_root(model, int(model.site_bodyid[site]), root) if name.endswith(SITE) else None
+        if body is None:
+            continue
+        frame = data.xmat[body].reshape(3, 3)
+        center = frame.T @ (data.site_xpos[site] - data.xpos[body])
+        half = np.abs(frame.T @ data.site_xmat[site].reshape(3, 3)) @ model.site_size[site]
+        found.append((body, Region(_vector(center), _vector(half), name.removesuffix(SITE).strip(" _-.").lower())))
+    if len(movers) == 1:
+        del found[1:]
+    if len(found) == 1:
+        found = [(body, replace(region, name="")) for body, region in found]
+    return {body: tuple(region for one, region in found if one == body) for body in movers if found}
 
 
 def _vector(numbers: Any) -> Vector:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
 SCENERY = "scenery"
+_BELT = re.compile(r"/belt\d+\Z")
 
 
 def scenery_name(number: int) -> str:
@@ -16,6 +18,11 @@ def scenery_name(number: int) -> str:
 def is_scenery(name: str) -> bool:
     """Return whether a name is that of a model of the whole scene; elements have a namespace."""
     return name.startswith(SCENERY) and name[len(SCENERY) :].isdecimal()
+
+
+def joint_of_part(name: str) -> str:
+    """Return the name in the world of the joint of a moving part."""
+    return f"{name}/joint"
 
 
 def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:
@@ -33,5 +40,5 @@ def _owner_of(model: Any, geom: int, agents: tuple[str, ...]) -> str:
         if name.startswith(f"{agent}/") or named.startswith(f"{agent}/"):
             return agent
     # A belt belongs to its object.
-    body = name.partition("/belt")[0]
+    body = _BELT.sub("", name)
     return named or f"geom {geom}" if body == "world" else body

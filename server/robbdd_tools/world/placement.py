@@ -9,10 +9,12 @@ from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.passive_joints import initial_pose
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
 
@@ -38,6 +40,8 @@ BIN_SKEW = 0.2
 BIN_ROOM = 0.03
 """Half edge (m) of the square in a bin's middle where a hand can work."""
 TRIES = 400
+SQUARE = 1e-3
+"""Share of a quarter turn up to which edges count as parallel to the world's axes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +137,11 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
         for name, (x, y, _) in _at_places(cast, tuple(name for name in names if name not in placed), table):
             poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
     bins = [name for name in poses if cast.objects[name].free]
+    for name, model in cast.objects.items():
+        if model.joint is not None and model.joint.parent:
+            poses[name] = initial_pose(model, cast.objects[model.joint.parent], poses[model.joint.parent])
+        elif model.joint is not None and name not in poses:
+            raise SceneError(f"'{name}' hangs on a joint: give it a pose in the .scenex", origin=cast.origin(name))
     taken: list[_Disc] = []
     dropped: list[Ball] = []
     resampled = 0
@@ -244,9 +253,12 @@ def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose,
     if region is None:
         raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
     x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
+    half = region.half
+    if model.joint is not None:
+        (x, y, z), half = pose.at(region.center).position, _flat(half, pose.yaw)
     bottom = z - region.half[2]
-    if model.free:
-        inner = (region.half[0] - radius, region.half[1] - radius)
+    if can_move(model):
+        inner = (half[0] - radius, half[1] - radius)
         if region.walled:
             yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
         else:
@@ -258,6 +270,15 @@ def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose,
         raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
     yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)
     yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING)
+
+
+def _flat(half: Vector, yaw: float) -> Vector:
+    """Return half edges (m), along the world's axes, of a rectangle inside a box that is turned by an angle (rad)."""
+    quarters = yaw / (pi / 2)
+    if abs(quarters - round(quarters)) > SQUARE:
+        least = min(half[:2]) / 2**0.5
+        return (least, least, half[2])
+    return (half[1], half[0], half[2]) if round(quarters) % 2 else half
 
 
 def _draw(

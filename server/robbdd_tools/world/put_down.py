@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
 
@@ -45,7 +46,7 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
     for carrier, region in regions:
         if region.walled:
             yield from _in_bin(simulation, name, carrier, region)
-        elif simulation.world.cast.objects[carrier].free:
+        elif can_move(simulation.world.cast.objects[carrier]):
             yield from _on_board(simulation, name, carrier, region)
         else:
             yield from _on_table(simulation, robot, name, carrier, region)

@@ -24,7 +24,7 @@ class Bodies:
 
     ``positions`` (m, 3) m and ``orientations`` (m, 4) are the initial poses of the bodies ``names``; fixed bodies keep
     them. The poses of those in the columns ``loose`` (k,) are in the engine's state at the indices ``places`` (k, 3)
-    and ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools.
+    and ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools and the parts that move by joints.
     """
 
     names: tuple[str, ...]
@@ -68,7 +68,7 @@ class Recorder:
     def append(self, time: float, state: FloatArray, grips: Mapping[str, FloatArray]) -> FloatArray:
         """Append a sample: the state (width,), per agent its grips (m,).
 
-        Returns the array for the tools' positions and orientations, shape (a, 7).
+        Returns the array for these tools' positions and orientations, shape (a, 7).
         """
         if self._rows == len(self._times):
             self._grow()

@@ -6,14 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
 from robbdd_tools.world.scene_configuration import Configured, configure, height_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
+    from robbdd_tools.base.articulation import Opening
     from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
     from robbdd_tools.catalog.executable import Origin
     from robbdd_tools.catalog.settings import Numbers
@@ -53,6 +55,8 @@ class Cast:
     """Elements that no clause uses and that have no model or, for agents, no place."""
     heights: Mapping[str, float] = field(default_factory=dict[str, float])
     """Height (m) of each object before ``height_scale``."""
+    openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
+    """How each thing with a joint opens, or the reason why this is not known."""
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
         """Return the pose of an object's centre in an executable scene; raises ``SceneError``."""
@@ -75,7 +79,7 @@ class Cast:
     @property
     def tables(self) -> tuple[str, ...]:
         """The fixed objects, which carry everything else. The one with the largest top is first."""
-        fixed = [name for name, model in self.objects.items() if not model.free]
+        fixed = [name for name, model in self.objects.items() if not can_move(model)]
         return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
 
 
@@ -98,12 +102,12 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     objects: dict[str, ObjectModel] = {}
     left_out: list[str] = []
     # Sorted: results must not depend on the order in which a model declares its objects.
-    for name in sorted(scene.objects):
+    for name in sorted(scene.objects) if staging is None else staging.carriers_first(scene.objects):
         carries = any(name in own for own in scene.workspaces.values())
         model = None if staging is None else staging.object_model(name, carries)
         model = model or catalog.object_for(local_name(name), scene.sets.get(name, ()))
         if model is not None:
-            objects[name] = carrying(model) if carries else model
+            objects[name] = model
         elif name in scene.unused:
             left_out.append(name)
         else:
@@ -119,10 +123,17 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         if robot is None:
             raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
         agents[name] = robot
-    if all(model.free for model in objects.values()):
+    objects = {name: objects[name] for name in sorted(objects)}
+    openings: dict[str, Opening | str] = {}
+    if staging is not None:
+        moving = dict(staging.moving_parts())
+        objects = {name: model for name, model in objects.items() if name not in moving} | moving
+        openings = dict(staging.openings())
+    objects |= {name: carrying(objects[name]) for name in _bare_carriers(scene, objects)}
+    if all(can_move(model) for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
     heights = {name: height_of(model) for name, model in objects.items()}
-    found = Configured(objects, agents)
+    found = Configured(objects, agents, openings)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
     objects |= {name: centred(model) for name, model in objects.items()}
     regions = _regions(scene, objects)
@@ -138,7 +149,25 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         staging,
         tuple(left_out),
         heights,
+        openings,
     )
+
+
+def _bare_carriers(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[str]:
+    """Yield the objects that carry a workspace without a region of their own or of one of their moving parts."""
+    for name in {one: None for own in scene.workspaces.values() for one in own if one in objects}:
+        if not any(objects[one].region or objects[one].parts for one in moving_with(name, objects)):
+            yield name
+
+
+def moving_with(name: str, objects: Mapping[str, ObjectModel]) -> tuple[str, ...]:
+    """Return an object and the moving parts that it carries, at any depth."""
+    found = [name]
+    for one, model in objects.items():
+        # A part comes after the one that carries it.
+        if model.joint is not None and model.joint.parent in found:
+            found.append(one)
+    return tuple(found)
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
@@ -164,10 +193,25 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
                 continue
             if model is None:
                 raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
-            boxes += [(carrier, region) for region in model.spaces(local_name(workspace))]
+            boxes += _spaces(carrier, local_name(workspace), objects)
         if boxes:
             regions[workspace] = tuple(boxes)
     return regions
+
+
+def _spaces(carrier: str, workspace: str, objects: Mapping[str, ObjectModel]) -> list[tuple[str, Region]]:
+    """Return the regions of a workspace that an object carries, each with the object in whose frame it is.
+
+    Of an object with moving parts, these are those whose name the workspace's name contains; without any, those without
+    a name; without any, all.
+    """
+    members = moving_with(carrier, objects)
+    if len(members) == 1:
+        return [(carrier, region) for region in objects[carrier].spaces(workspace)]
+    every = [(one, part) for one in members for part in objects[one].parts]
+    named = [(one, part) for one, part in every if part.name in workspace.lower()]
+    plain = [(one, region) for one in members if (region := objects[one].region) is not None]
+    return named or plain or every
 
 
 def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:

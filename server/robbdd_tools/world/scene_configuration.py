@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.base.articulation import Opening
 from robbdd_tools.catalog.api import GripperKind, ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import object_has
 from robbdd_tools.catalog.settings import SETTINGS, Numbers, SettingError, setting_of, written
@@ -38,6 +39,7 @@ class Configured:
 
     objects: dict[str, ObjectModel]
     agents: dict[str, RobotModel]
+    openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
     ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     drops: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     seed: int | None = None
@@ -92,10 +94,20 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.objects[element] = _driven(able, value[0])
         case "height_scale" if able is not None:
             found.objects[element] = _scaled(able, value[0])
+        case "opening" if isinstance(opening := found.openings.get(element), Opening):
+            _open(found, opening, value[0])
         case name if thing is None and robot is None:
             raise SceneError(f"'{config.target}', which should have {name} = {config.value}, is not in the scene")
         case name:
             raise SceneError(f"'{config.target}' has no {name}: it applies to {SETTINGS[name].target}")
+
+
+def _open(found: Configured, opening: Opening, share: float) -> None:
+    """Let a thing start at a share of its way from the closed to the open end."""
+    model = found.objects[opening.part]
+    assert model.joint is not None, "a thing that opens has a joint"
+    closed, opened = opening.ends
+    found.objects[opening.part] = replace(model, joint=replace(model.joint, start=closed + share * (opened - closed)))
 
 
 def _loose(found: Configured, areas: Mapping[str, Numbers]) -> list[str]:

@@ -18,6 +18,7 @@ from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.holding import Grips
+from robbdd_tools.world.owners import joint_of_part
 from robbdd_tools.world.recorder import Bodies, Recorder
 from robbdd_tools.world.robot import Robot
 from robbdd_tools.world.touch_forces import TouchForces
@@ -70,6 +71,8 @@ class Simulation:
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
         ]
+        parts = [name for name, model in world.cast.objects.items() if model.joint is not None]
+        self._tools += [(body.xpos, body.xmat) for body in (self.data.body(name) for name in parts)]
         limited = {element for element, name in world.cast.judged if name == "force_limit"}
         self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
         self.touches: TouchForces | None = None
@@ -83,7 +86,7 @@ class Simulation:
             np.array([self._column[name] for name in self._free], dtype=int),
             starts + np.arange(3),
             starts + np.arange(3, 7),
-            np.array([self._column[name] for name in self.robots], dtype=int),
+            np.array([self._column[name] for name in (*self.robots, *parts)], dtype=int),
         )
         self.recorder = Recorder(bodies, tuple(self.robots), int(self.model.nq))
 
@@ -221,6 +224,9 @@ class Simulation:
             self.open_fingers(robot, self.data)
             self.data.act[robot.targets] = home
             self.command(robot, home, robot.model.gripper_open)
+        for name, model in self.world.cast.objects.items():
+            if model.joint is not None:
+                self.data.qpos[self.model.joint(joint_of_part(name)).qposadr[0]] = model.joint.start
         try:
             with strict(self.model, self.data):
                 mujoco.mj_forward(self.model, self.data)

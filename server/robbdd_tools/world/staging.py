@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, replace
 from math import atan2
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.frames import Frames
 from robbdd_tools.world.gripper_faces import refuse_smooth_faces
-from robbdd_tools.world.model_files import FromFile, load, object_from, usable
+from robbdd_tools.world.model_files import FromFile, MovingPart, load, object_from, usable
+from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 
 if TYPE_CHECKING:
+    from robbdd_tools.base.articulation import Opening
     from robbdd_tools.catalog.api import ObjectModel, RobotModel
     from robbdd_tools.catalog.executable import ModelSource, Origin, Realisation, SceneInstance
     from robbdd_tools.world.frames import Transform
@@ -57,6 +61,8 @@ class Staging:
         self.frictions = instance.frictions
         self._frames = Frames(instance, seed)
         self._found: dict[str, FromFile] = {}
+        self._files: dict[str, FromFile] = {}
+        self._part_names: dict[tuple[str, str], str] = {}
         self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]
         # The engine drops the pairs of a body that is removed from its model.
         self._pairs = [
@@ -74,23 +80,100 @@ class Staging:
         """The models of the whole scene, without the bodies that are elements of the scene."""
         return tuple(spec for _, spec in self._worlds)
 
+    def carriers_first(self, elements: Iterable[str]) -> list[str]:
+        """Return elements in the order of their names, but those last that may be moving parts of others."""
+        names = {element.rpartition(":")[2]: element for element in elements}
+        parts = {
+            element
+            for name, element in names.items()
+            if self._source(element) is None and (self._hangs_on(name, names.keys()) or not self._has_body(name))
+        }
+        return sorted(elements, key=lambda element: (element in parts, element))
+
+    def _has_body(self, name: str) -> bool:
+        return any(spec.body(name) is not None for _, spec in self._worlds)
+
+    def _hangs_on(self, name: str, others: AbstractSet[str]) -> bool:
+        """Return whether the body of a name hangs by a joint on one of other names, in a model of the whole scene."""
+        for _, spec in self._worlds:
+            body, jointed = spec.body(name), False
+            while body is not None and body.name != "world":
+                jointed = jointed or any(joint.type != mujoco.mjtJoint.mjJNT_FREE for joint in body.joints)
+                body = body.parent
+                if jointed and body is not None and body.name in others:
+                    return True
+        return False
+
     def object_model(self, element: str, carries: bool) -> ObjectModel | None:
         """Return the model of an object, ``None`` if not defined; raises ``SceneError``.
 
-        ``carries`` means that it carries a workspace. An object without a model is the body of its name in a model of
-        the whole scene, if there is one.
+        ``carries`` means that it carries a workspace. An object without a model is the moving part of its name of an
+        object asked for before, else the body of its name in a model of the whole scene, if there is one.
         """
         chosen = self._source(element)
         if chosen is None:
-            return self._from_world(element, carries)
+            return self._part(element) or self._from_world(element, carries)
         if chosen.kind == "catalog":
             found = load_catalog().objects.get(chosen.name)
             if found is None:
                 raise SceneError(f"the catalog has no object '{chosen.name}'", origin=chosen.origin)
+            if chosen.opening is not None:
+                raise SceneError(f"the catalog's '{chosen.name}' has no joint to open", origin=chosen.origin)
             return found
         name = next((name for _, name in chosen.bodies), "")
         # A pose in a file of its own is meaningless in the scene.
-        return object_from(load(chosen), chosen, name, carries).model
+        self._files[element] = object_from(load(chosen), chosen, name, carries)
+        return self._files[element].model
+
+    def moving_parts(self) -> Iterator[tuple[str, ObjectModel]]:
+        """Yield the moving parts of the objects asked for, each after the one that carries it."""
+        for element, file in self._files.items():
+            for part in file.parts:
+                yield self._part_name(element, part), self._hung(element, file, part)
+
+    def openings(self) -> Iterator[tuple[str, Opening | str]]:
+        """Yield how each object asked for opens, or why this is not known. Raises ``SceneError``."""
+        for element, file in self._files.items():
+            joints = {
+                part.joint: (self._part_name(element, part), joint)
+                for part in file.parts
+                if (joint := part.model.joint) is not None
+            }
+            if file.model.joint is not None:
+                joints[file.joint] = (element, file.model.joint)
+            source = self._source(element)
+            if joints or (source is not None and source.opening is not None):
+                yield element, opening_of(element, joints, source)
+            for part in file.parts:
+                name, joint = self._part_name(element, part), part.model.joint
+                if joint is not None:
+                    yield name, opening_of(name, {part.joint: (name, joint)}, None)
+
+    def _part(self, element: str) -> ObjectModel | None:
+        """Return the moving part that an element without a model is; ``None`` for another element."""
+        name = element.rpartition(":")[2]
+        found = [(owner, one) for owner, file in self._files.items() for one in file.parts if one.body == name]
+        if not found:
+            return None
+        owner, part = found[0]
+        if len(found) > 1:
+            both = " and of ".join(f"'{one}'" for one, _ in found)
+            raise SceneError(
+                f"'{element}' has no model, and is a moving part of {both}: rename one in a copy of the file"
+            )
+        self._part_names[owner, name] = element
+        return self._hung(owner, self._files[owner], part)
+
+    def _part_name(self, element: str, part: MovingPart) -> str:
+        return self._part_names.get((element, part.body), f"{element}/{part.body}")
+
+    def _hung(self, element: str, file: FromFile, part: MovingPart) -> ObjectModel:
+        """Return the model of a part with the name of the element that carries it."""
+        joint = part.model.joint
+        assert joint is not None, "a moving part has a joint"
+        carrier = next((one for one in file.parts if one.body == joint.parent), None)
+        parent = element if carrier is None else self._part_name(element, carrier)
+        return replace(part.model, joint=replace(joint, parent=parent))
 
     def robot(self, element: str) -> RobotModel | None:
         """Return the model of an agent, ``None`` if not defined; raises ``SceneError``."""
@@ -144,14 +227,19 @@ class Staging:
         """Yield the pairs that the models of the whole scene declare for elements, with their geoms in the world."""
         for pair in self._pairs:
             first, second = (self._geom(pair.number, geom) for geom in pair.geoms)
-            if any(name in (first[0], second[0]) for name in self._found):
+            if not (is_scenery(first[0]) and is_scenery(second[0])):
                 yield shape_name(*first), shape_name(*second), pair
 
     def _geom(self, number: int, geom: str) -> tuple[str, str | int]:
         """Return the element of a model's geom and the number of its shape, else scenery and geom."""
         for element, found in self._found.items():
-            if self._world_of[element] == number and geom in found.geoms:
+            if self._world_of[element] != number:
+                continue
+            if geom in found.geoms:
                 return element, found.geoms.index(geom)
+            for part in found.parts:
+                if geom in part.geoms:
+                    return self._part_name(element, part), part.geoms.index(geom)
         return scenery_name(number), geom
 
     def _source(self, element: str) -> ModelSource | None:
@@ -164,7 +252,7 @@ class Staging:
             return self._found[element].model
         for number, (source, spec) in enumerate(self._worlds):
             if spec.body(name) is not None:
-                self._found[element] = object_from(spec, source, name, carries)
+                self._found[element] = self._files[element] = object_from(spec, source, name, carries)
                 self._world_of[element] = number
                 spec.delete(spec.body(name))
                 return self._found[element].model

@@ -13,6 +13,7 @@ from robbdd_tools.catalog.executable import (
     Law,
     Link,
     ModelSource,
+    OpeningModel,
     Origin,
     Realisation,
     SceneInstance,
@@ -180,7 +181,8 @@ class InstanceReader:
                 continue
             bodies, trees = self._mappings(node, "rbw:Body"), self._mappings(node, "rbw:KinematicTree")
             form, package = records.text(node, "rbw:format"), records.text(node, "rbw:ros-package")
-            yield ModelSource(node, form, kind, name, package, bodies, trees, arm, self._places(node))
+            opening = self._opening(node)
+            yield ModelSource(node, form, kind, name, package, bodies, trees, arm, self._places(node), opening)
 
     def _source(self, node: Iri) -> tuple[str, str]:
         records = self._records
@@ -210,6 +212,11 @@ class InstanceReader:
         home, velocity = self._numbers(node, "rbw:home"), self._numbers(node, "rbw:velocity-limits")
         arm = ArmModel(tool, actuator, opened, closed, pads, stroke or 0.0, home, velocity)
         return None if arm == ArmModel() else arm
+
+    def _opening(self, node: Iri) -> OpeningModel | None:
+        terms = ("rbw:opening-joint", "rbw:opening-closed", "rbw:opening-open")
+        opening = OpeningModel(*(self._records.text(node, term) for term in terms))
+        return None if opening == OpeningModel() else opening
 
     def _friction(self, node: Iri) -> Iterator[Friction]:
         """Yield the friction of each pair of elements that two elements or sets form."""

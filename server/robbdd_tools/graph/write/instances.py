@@ -199,6 +199,8 @@ class _InstanceWriter:
             sink.add(node, "rbw:tool", sink.literal(model.tool.value), frame.at(model.tool))
         if gripper is not None:
             self._gripper(node, gripper)
+        if model.opening is not None:
+            self._opening(node, model.opening)
         for term, vector, unit in (
             ("home", model.home, model.home_unit),
             ("velocity-limits", model.velocity, model.velocity_unit),
@@ -222,6 +224,15 @@ class _InstanceWriter:
         if gripper.pads:
             pads = sink.make_list([sink.literal(pad.value) for pad in gripper.pads])
             sink.add(node, "rbw:gripper-pads", pads, frame.at(gripper))
+
+    def _opening(self, node: URIRef, opening: tree.Opening) -> None:
+        sink, frame = self._sink, self._frame
+        if opening.joint is not None:
+            sink.add(node, "rbw:opening-joint", sink.literal(opening.joint.value), frame.at(opening.joint))
+        ends = (("closed", opening.closed, opening.closed_unit), ("open", opening.open, opening.open_unit))
+        for end, number, unit in ends:
+            if number is not None:
+                sink.add(node, f"rbw:opening-{end}", sink.quantity(f"{number.value:g} {unit}"), frame.at(number))
 
     def _sensor(self, instance: URIRef, sensor: tree.Node) -> URIRef | None:
         sink, frame = self._sink, self._frame

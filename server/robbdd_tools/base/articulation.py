@@ -1,0 +1,93 @@
+"""Joints of things that open: drawers, doors, lids, levers and buttons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+
+Three = tuple[float, float, float]
+Four = tuple[float, float, float, float]
+CLOSED_SHARE, OPEN_SHARE = 0.02, 0.9
+"""Shares of its travel up to which a thing is closed, and from which it is open, unless the scene states others.
+
+A closed drawer or door lies against its stop, whose contact yields a little. Open means that it gives access, which it
+does before its last stop; a door that a spring or a gripper leaves half open does not.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class PassiveJoint:
+    """The joint that connects a moving part of an object to the element ``parent``.
+
+    - ``kind``: ``slide`` (m, N) or ``hinge`` (rad, N m).
+    - ``axis``, ``anchor`` (m): in the frame of the part.
+    - ``position`` (m), ``rotation`` (unit quaternion, w first): the frame of the part in that of the parent, as the
+      file shows it. The joint position is ``zero`` there.
+    - ``bounds``: the range of the joint; ``None`` if it is not limited.
+    - ``start``: the joint position at the beginning.
+    - ``friction``, ``damping``, ``stiffness``, ``rest`` (of the spring), ``armature``: as in the file.
+    """
+
+    parent: str
+    kind: Literal["slide", "hinge"]
+    axis: Three
+    anchor: Three
+    position: Three
+    rotation: Four
+    zero: float = 0.0
+    bounds: tuple[float, float] | None = None
+    start: float = 0.0
+    friction: float = 0.0
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+    armature: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """How a thing opens: by the joint of the element ``part``, with positions in m or rad.
+
+    ``ends`` are the fully closed and the fully open position. The thing is closed up to the position ``closed``, and
+    open from the position ``open`` on.
+    """
+
+    part: str
+    kind: Literal["slide", "hinge"]
+    ends: tuple[float, float]
+    closed: float
+    open: float
+
+
+@dataclass(frozen=True, eq=False)
+class OpeningRecord:
+    """How far a thing was open: the joint positions (n,) in m or rad, and those of ``Opening``."""
+
+    kind: str
+    closed: float
+    open: float
+    positions: FloatArray
+
+    @property
+    def unit(self) -> str:
+        """The unit of margins."""
+        return "m" if self.kind == "slide" else "deg"
+
+    def beyond_open(self) -> FloatArray:
+        """Return how far beyond the position ``open`` it is, in ``unit``, negative before it, shape (n,)."""
+        return self._in_unit(self.positions - self.open)
+
+    def short_of_closed(self) -> FloatArray:
+        """Return the room left up to the position ``closed``, in ``unit``, negative beyond it, shape (n,)."""
+        return self._in_unit(self.closed - self.positions)
+
+    def _in_unit(self, difference: FloatArray) -> FloatArray:
+        sense = 1.0 if self.open > self.closed else -1.0
+        return difference * (sense if self.kind == "slide" else degrees(sense))
