@@ -148,6 +148,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever", "the first", "the last", "every"),
   phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
   phrases("keyword.operator.wordlike", "and", "or", "not"),
+  phrases("keyword.control.order", "then", "meanwhile"),
   phrases(`${WORD}.story`, "As A", "As An", "I Want", "So That"),
   phrases(
     `${WORD}.variation`,

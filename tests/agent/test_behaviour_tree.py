@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from robbdd_tools.agent.behaviour_run import BehaviourRun, Timing
+from robbdd_tools.agent.behaviour_calls import Timing
+from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.shared_executions import calls_of
 from robbdd_tools.agent.tree_execution import TreeRun
@@ -54,7 +55,7 @@ def test_a_tree_of_pick_and_place_is_pick_and_place_to_the_bit() -> None:
 def test_a_selector_goes_on_where_its_first_part_fails() -> None:
     root = whole("sequence", whole("selector", pick("first", BALL), pick("second"), name="grasp"), PLACE)
     run = executed(of("t:whole", root, HEAVY))
-    assert run.run_behaviour(0), run.failure
+    assert run.run_behaviour(0), run.failure(0)
     trace = run.advance_until(lambda _: False)
     times = {stamp.name: stamp.time for stamp in trace.events}
     assert list(times) == ["t:first-start", "t:second-start", "t:second-end", "t:place-start", "t:place-end"]
@@ -62,7 +63,7 @@ def test_a_selector_goes_on_where_its_first_part_fails() -> None:
     course = run.course
     first = executed(of("t:first", root, HEAVY), course)
     assert not first.run_behaviour(0)
-    assert first.failure.startswith(f"gripper lost {BALL} at ")
+    assert first.failure(0).startswith(f"gripper lost {BALL} at ")
     assert first.trace.unreached == ""
 
 
@@ -104,7 +105,7 @@ def create(leaf):
 """
     whole_node = NodeSpec("t:whole", "whole", "leaf", problem="it is made")
     run = executed(made(tmp_path, code, pick("first", BALL), pick("second"), whole_node))
-    assert run.run_behaviour(0), run.failure
+    assert run.run_behaviour(0), run.failure(0)
     assert run.broken == ""
 
 
@@ -122,7 +123,7 @@ def create(leaf):
     return py_trees.decorators.Retry("twice", both, 2)
 """
     run = executed(made(tmp_path, code, pick("first"), NodeSpec("t:whole", "whole", "leaf", problem="it is made")))
-    assert run.run_behaviour(0), run.failure
+    assert run.run_behaviour(0), run.failure(0)
 
 
 @pytest.mark.parametrize(

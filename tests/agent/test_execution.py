@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Call, Timing
+from robbdd_tools.agent.behaviour_calls import Call, Timing
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge

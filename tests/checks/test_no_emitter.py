@@ -35,6 +35,19 @@ def test_events_of_the_behaviour_are_emitted_by_name(event: str) -> None:
     assert found(waiting(event), CODE) == []
 
 
+def test_a_name_that_fits_several_behaviours_of_a_when_needs_emits() -> None:
+    other = (
+        "then Behaviour (ns=t) more { duration: from <pick-start> until <place-end> <robot> picks <part> }\n    Then:"
+    )
+    text = waiting("evt-pick-end").replace("Then:", other, 1)
+    (finding,) = found(text, "syntax", CODE)
+    assert finding.message.startswith("several behaviours of the When emit 'pick-end'")
+    assert "'emits pick-end as <evt-pick-end>'" in finding.message
+    stated = text.replace("picks <part> }", "picks <part> emits pick-end as <evt-pick-end> }")
+    assert found(stated, "syntax", CODE) == []
+    assert found(text.replace("<evt-pick-end>", "<place-end>"), "syntax", CODE) == []
+
+
 def test_durations_emit_their_events_whatever_their_names() -> None:
     text = waiting("parked").replace("from <pick-start> until <place-end>", "from <pick-start> until <parked>")
     assert found(text, CODE) == []

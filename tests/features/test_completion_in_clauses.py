@@ -213,3 +213,8 @@ def test_an_execution_offers_the_behaviours_of_the_catalog_in_quotes() -> None:
     found = {one.label: one.text for one in at("bhv impl (ns=x) b { catalog $0 }", "main.bddx")}
     assert found.keys() == {f'"{name}"' for name in EXECUTORS}
     assert all(label == text for label, text in found.items())
+
+
+def test_a_further_behaviour_is_offered_after_a_behaviour() -> None:
+    text = MODEL.replace("    Then:\n", "        $0\n    Then:\n", 1)
+    assert {"then", "meanwhile"} <= {item.label for item in at(text)}

@@ -95,7 +95,7 @@ def test_the_behaviours_of_a_scenario_are_those_of_its_when_clauses() -> None:
     event = replace(WHEN, sentence='event "t:e" occurs')
     named = replace(KNOWN, sentence=WHEN.sentence, statement=None)
     calls = behaviour_calls(scenario(clauses=(named, WHEN, event, placing)))
-    assert [call.behaviour.name for call in calls] == ["pick", "pick-place"]
+    assert [call.behaviour.name for call, _ in calls] == ["pick", "pick-place"]
 
 
 def test_a_when_clause_expects_its_event_in_its_first_iteration() -> None:

@@ -155,7 +155,9 @@ def test_a_failure_to_reach_says_by_how_much_or_what_is_in_the_way(tmp_path: Pat
     short = strangers.SCARA.replace(".45 0 0", ".25 0 0").replace('pos=".45 0 .06"', 'pos=".25 0 .06"')
     run = picking(tmp_path, short)
     assert not run.run_behaviour(0)
-    assert re.fullmatch(r"env:own cannot reach (env:cube1|a free place .*): its tool stays \d+ mm short", run.failure)
+    assert re.fullmatch(
+        r"env:own cannot reach (env:cube1|a free place .*): its tool stays \d+ mm short", run.failure(0)
+    )
 
 
 FACES = ArmModel(pads=("left_pad", "right_pad"))

@@ -122,8 +122,9 @@ def test_clauses_are_unknown_when_the_simulation_breaks_down(folder: Path) -> No
     trace = run.advance_until(lambda _: False)
     reason = f"the simulation became unstable: the free joint of '{CUBE}' moves without bounds, at {trace.end:.2f} s"
     assert trace.remark == reason
-    assert run.cut_short is not None
-    assert (run.cut_short.outcome, run.cut_short.cause) == (Outcome.UNKNOWN, Cause.SIMULATION)
+    stopped = run.cut_short(0)
+    assert stopped is not None
+    assert (stopped.outcome, stopped.cause) == (Outcome.UNKNOWN, Cause.SIMULATION)
     predicate = load_catalog().predicates["located-at"]
     found = judge(predicate, {"object": CUBE, "workspace": BIN_WS}, After("t:place-end"), trace, run.regions)
     assert found.outcome is Outcome.UNKNOWN

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Timing
+from robbdd_tools.agent.behaviour_calls import Timing
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, During, TimeConstraint

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Call
+from robbdd_tools.agent.behaviour_calls import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.shared_executions import call_of
 from robbdd_tools.catalog.executable import Implementation, Origin
@@ -27,7 +27,7 @@ def placing(thing: str = CUBE, places: tuple[str, ...] = BINS) -> Call:
 
 def chosen(seed: int) -> str:
     run = execution([placing()], seed=seed)
-    assert run.run_behaviour(0), run.failure
+    assert run.run_behaviour(0), run.failure(0)
     return run.chosen(0)
 
 
@@ -45,7 +45,7 @@ def test_a_place_without_room_is_not_chosen() -> None:
     full = replace(SCENE, objects=(*SCENE.objects, *things), places=dict.fromkeys(things, BIN_WS))
     for seed in (1, 2, 3, 4):
         run = execution([placing()], full, seed)
-        assert run.run_behaviour(0), run.failure
+        assert run.run_behaviour(0), run.failure(0)
         assert run.chosen(0) == OTHER_WS
 
 
@@ -89,5 +89,5 @@ def test_a_users_behaviour_gets_the_set(tmp_path: Path) -> None:
     )
     own = Implementation("x:own", "python", "gets_the_set:Look", Origin(str(tmp_path / "run.bddx"), 1, 1))
     run = Execution(replace(scenario(), execution=ExecutionSpec("x:run", "x:run", own)), [placing()])
-    assert run.run_behaviour(0), run.failure
+    assert run.run_behaviour(0), run.failure(0)
     assert run.chosen(0) == ""

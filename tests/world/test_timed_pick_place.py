@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Call
+from robbdd_tools.agent.behaviour_calls import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.catalog.timetables import PANDA as PANDA_TIMES

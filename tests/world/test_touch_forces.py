@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Timing
+from robbdd_tools.agent.behaviour_calls import Timing
 from robbdd_tools.monitor.trace import Trace
 from world.worlds import BALL, BIN, BIN_WS, CUBE, PANDA, execution, pick_place
 

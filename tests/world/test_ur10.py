@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robbdd_tools.agent.behaviour_run import Call
+from robbdd_tools.agent.behaviour_calls import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.robots.ur10 import UR10
 from robbdd_tools.judging.decisions import decide

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit import write_manifest
-from robbdd_tools.agent.behaviour_run import Call, Timing
+from robbdd_tools.agent.behaviour_calls import Call, Timing
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 

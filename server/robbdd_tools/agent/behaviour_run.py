@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from robbdd_tools.agent.behaviour_calls import Call, Choice, Timing, groups_of
+from robbdd_tools.agent.behaviour_executors import BehaviourExecutors
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
-from robbdd_tools.catalog.coordination import emitter
-from robbdd_tools.catalog.executors import DEFAULT, TIMED, executes
+from robbdd_tools.catalog.coordination import EXTERNAL, emitter
+from robbdd_tools.catalog.executors import DEFAULT, executes
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
 from robbdd_tools.world.composition import build_world
@@ -21,15 +20,11 @@ from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError, at
 from robbdd_tools.world.extent import outline_of
 from robbdd_tools.world.overlaps import refuse_overlaps
-from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.scene import contents_of
 from robbdd_tools.world.simulation import Simulation
-from robbdd_tools.world.timed_pick_place import TimedPickPlace
-from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.tree_execution import TreeRun
-    from robbdd_tools.catalog.api import Arguments
     from robbdd_tools.catalog.coordination import TreeSpec
     from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.monitor.fault import Fault
@@ -40,75 +35,23 @@ START, END = "scenario-start", "scenario-end"
 """Emitters of the events that delimit a scenario."""
 REST = 1.0
 """Seconds between the end of the last behaviour and the end of the scenario, in which objects come to rest."""
-TIMEOUT = 60.0
-"""Seconds of simulated time after which an execution is stopped."""
-PLACES = 1
-"""Separates the random stream for places from that of the scene, which starts from the same seed."""
 LOOK = 16
 """Control ticks after which an execution without events is examined again."""
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A behaviour, by its catalog name, with the names in its slots.
-
-    The place of a behaviour may be a set of workspaces.
-    """
-
-    behaviour: str
-    arguments: Arguments
-
-    def element(self, slot: str) -> str:
-        """Return the single element in a slot. Raises ``SceneError`` if the slot contains a set."""
-        found = self.arguments[slot]
-        if isinstance(found, str):
-            return found
-        raise SceneError(f"'{self.behaviour}' needs one {slot}, not a set of them")
-
-    @property
-    def places(self) -> tuple[str, ...]:
-        """The workspaces where the behaviour may place."""
-        found = self.arguments["workspace"]
-        return (found,) if isinstance(found, str) else tuple(found)
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """An element that a behaviour chose from a set of places.
-
-    The iteration and the nodes of a behaviour tree are numbered as in event stamps.
-    """
-
-    iteration: int
-    nodes: tuple[str, ...]
-    place: str
-
-
-@dataclass(frozen=True, slots=True)
-class Timing:
-    """The times of an execution in simulated s.
-
-    They are the minimum idle time before the first behaviour, the time of recording after the scenario's end, and the
-    timeout. ``touching`` are the elements whose contact forces are recorded; a workspace means its objects.
-    """
-
-    lead: float = 0.5
-    tail: float = 0.0
-    timeout: float = TIMEOUT
-    touching: frozenset[str] = frozenset()
 
 
 class BehaviourRun:
     """The execution of behaviours in a simulated world that has settled at time 0. Raises ``SceneError``.
 
     - ``stamps``: the events emitted so far.
-    - ``completed``: the number of behaviours of a sequence that have succeeded.
+    - ``succeeded``: the indices of the behaviours in ``calls`` that have succeeded.
+    - ``failures``: the reasons of those that have failed.
     - ``tree``: the behaviour tree, if one is executed.
     - ``remark``: the latest problem.
     - ``broken``: an error in the user's code or model that prevents any verdict.
     - ``fault``: describes an error in the user's code.
     - ``cut_short``: the verdict on behaviours that had not ended when the execution was stopped.
     - ``failed``: true when a behaviour has failed.
+    - ``begun``: the indices of the behaviours that have begun.
     - ``wall``: the wall time spent in s.
     - ``observers``: called after each sample, when the events of its time have been emitted, and at the end.
     """
@@ -122,27 +65,32 @@ class BehaviourRun:
         how = spec.execution
         self._implementation = None if how is None else how.implementation
         _check_implementation(self._implementation, self._calls)
+        self._emitters = spec.events
+        self._groups = groups_of(self._calls)
         self.tree = None if spec.tree is None else _tree_run(spec.tree, self)
         world = build_world(spec.scene, spec.seed, actor, spec.instance)
         self.simulation = Simulation(world)
         carriers = {carrier for name in self._timing.touching for carrier, _ in world.cast.regions.get(name, ())}
         self.simulation.watch_touches(self._timing.touching | carriers)
         self.quantities = OnDemandQuantities(self.simulation)
-        self._controllers: dict[str, PickPlace] = {}
         self.stamps: list[EventStamp] = []
         self.observers: list[Callable[[], None]] = []
         self.remark = ""
         self.finished = False
         self._muted = False
-        self._iteration = 0
+        self._active: int | None = None
         self.choices: list[Choice] = []
-        self._draw = np.random.default_rng((world.seed, PLACES))
-        self.completed = 0
+        self.begun: set[int] = set()
+        self.succeeded: set[int] = set()
+        self.failures: dict[int, str] = {}
         self.broken = ""
         self.cut_short: Verdict | None = None
         self.failed = False
         self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
+        self._executors = BehaviourExecutors(
+            self.simulation, self._implementation, self.regions, self._emit, self._note_choice
+        )
         self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
         self.correct_places = spec.scene.correct_places
         self.settings = read_back(self.simulation, spec.scene)
@@ -158,12 +106,12 @@ class BehaviourRun:
         self.wall += perf_counter() - began
 
     def _run_on(self) -> None:
-        known = len(self.stamps), self.completed
+        known = len(self.stamps), len(self.succeeded)
         for _ in range(LOOK):
             self._tick()
             if self.finished:
                 self._observe()
-            if self.finished or known != (len(self.stamps), self.completed):
+            if self.finished or known != (len(self.stamps), len(self.succeeded)):
                 return
 
     def _tick(self) -> None:
@@ -203,99 +151,97 @@ class BehaviourRun:
         yield from _idle(self._timing.tail)
 
     def _in_turn(self) -> Iterator[None]:
-        for iteration, call in enumerate(self._calls, start=1):
-            self._iteration = iteration
-            failure = yield from self.attempt(call)
-            self._iteration = 0
-            if failure:
+        for group in self._groups:
+            yield from self._together(group)
+            if self.failures:
                 return
-            self.completed += 1
+
+    def _together(self, group: Sequence[int]) -> Iterator[None]:
+        """Execute the behaviours of a group at the same time, until all of them have ended."""
+        running = {index: self._when_due(index) for index in group}
+        while True:
+            for index in tuple(running):
+                self._active = index
+                try:
+                    next(running[index])
+                except StopIteration as end:
+                    del running[index]
+                    if end.value:
+                        self.failures[index] = end.value
+                    else:
+                        self.succeeded.add(index)
+                finally:
+                    self._active = None
+            if not running:
+                return
+            self._refuse_to_wait(running)
+            yield
+
+    def _when_due(self, index: int) -> Generator[None, None, str]:
+        """Wait for the events that a behaviour requires, then execute it."""
+        call = self._calls[index]
+        while self._awaited(call):
+            yield
+        self.begun.add(index)
+        return (yield from self.attempt(call))
+
+    def _awaited(self, call: Call) -> list[str]:
+        """Return the events that must still occur before a behaviour begins. Its own events are not awaited."""
+        emitters = {event: self._emitters.get(event, EXTERNAL) for event in call.awaited}
+        iteration = self._iteration(call)
+        occurred = {stamp.name for stamp in self.stamps if stamp.iteration in (0, iteration)}
+        own = emitter(call.part, "")
+        return [event for event, name in emitters.items() if name not in occurred and not name.startswith(own)]
+
+    def _refuse_to_wait(self, running: Iterable[int]) -> None:
+        """Raise ``SimulationError`` if every behaviour that has not ended waits for an event."""
+        if any(index in self.begun for index in running):
+            return
+        event = next(event for index in running for event in self._awaited(self._calls[index]))
+        external = self._emitters.get(event, EXTERNAL) == EXTERNAL
+        reason = "nothing in the simulation emits it" if external else "no behaviour that could emit it is executed"
+        raise SimulationError(f"the next behaviour waits for event {event} at {self.simulation.time:.2f} s: {reason}")
+
+    def _iteration(self, call: Call) -> int:
+        return call.iteration or self._calls.index(call) + 1
 
     def attempt(self, call: Call) -> Generator[None, None, str]:
         """Execute a behaviour, one control tick for each step of the iterator.
 
         Returns the reason why the behaviour failed; empty if it succeeded.
         """
-        try:
-            yield from self._behaviour(call)
-        except BehaviourError as error:
-            self.remark = str(error)
-            self.failed = True
-            if not self._is_users():
-                yield from self._controller(call).withdraw()
-            return str(error)
-        return ""
-
-    def _is_users(self) -> bool:
-        return self._implementation is not None and self._implementation.kind == "python"
-
-    def _behaviour(self, call: Call) -> Iterator[None]:
-        controller = self._controller(call)
-        if self._implementation is not None and self._is_users():
-            world = AgentWorld(self.simulation, call.element("agent"), self._emit)
-            return run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
-        match call.behaviour:
-            case "pick":
-                return controller.pick(call.element("object"))
-            case "place":
-                return controller.place(call.element("object"), self._in_any_order(call))
-            case "pick-place" if self._implementation is not None and self._implementation.name == TIMED:
-                return TimedPickPlace(self.simulation, call.element("agent"), self._emit).pick_place(
-                    call.element("object"), call.places
-                )
-            case "pick-place":
-                return controller.pick_place(call.element("object"), self._in_any_order(call))
-            case other:
-                raise BehaviourError(f"no agent of this installation can execute the behaviour '{other}'")
-
-    def _controller(self, call: Call) -> PickPlace:
-        agent = call.element("agent")
-        if agent not in self.simulation.robots:
-            raise SceneError(f"the scene has no agent '{agent}'")
-        if agent not in self._controllers:
-            self._controllers[agent] = PickPlace(self.simulation, agent, self._emit, self._note_choice)
-        return self._controllers[agent]
-
-    def _in_any_order(self, call: Call) -> tuple[str, ...]:
-        """Return the places of a behaviour in an order derived from the scenario's seed."""
-        places = call.places
-        if len(places) < 2:
-            return places
-        order: list[int] = self._draw.permutation(len(places)).tolist()
-        return tuple(places[index] for index in order)
+        error = yield from self._executors.attempt(call)
+        if error is None:
+            return ""
+        self.remark = str(error)
+        self.failed = True
+        if not self._executors.is_users:
+            yield from self._executors.controller(call).withdraw()
+        return str(error)
 
     def _note_choice(self, place: str) -> None:
         nodes = () if self.tree is None else self.tree.active
-        self.choices.append(Choice(self._iteration, tuple(nodes), place))
+        self.choices.append(Choice(0 if self._active is None else self._active + 1, tuple(nodes), place))
 
     def _settle(self) -> None:
         for call in self._calls:
-            self._controller(call)
-            self._refuse_nowhere(call)
+            self._executors.controller(call)
+            self._executors.refuse_nowhere(call)
         refuse_overlaps(self.simulation)
         try:
             self.simulation.settle()
-            if self._calls and self._calls[0].behaviour == "place":
-                self._hand_over(self._calls[0])
+            for index in self._groups[0] if self._groups else ():
+                if self._calls[index].behaviour == "place":
+                    self._hand_over(self._calls[index])
         except SimulationError as error:
             origin = self.simulation.world.cast.cause(error)
             raise SceneError(f"the scene does not come to rest: {error}", origin=origin) from error
-
-    def _refuse_nowhere(self, call: Call) -> None:
-        """Raise ``SceneError`` if no object carries a place of a behaviour.
-
-        In this case, the model is wrong, not the robot.
-        """
-        places = call.places if "workspace" in call.arguments else ()
-        if places and not self._is_users() and not any(place in self.regions for place in places):
-            one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"
-            raise SceneError(f"'{call.behaviour}' cannot place at {one}: nothing in the scene carries that workspace")
 
     def _hand_over(self, call: Call) -> None:
         """Put the object to be placed into the gripper before the scenario starts."""
         self._muted = True
         try:
-            for _ in self._controller(call).pick(call.element("object")):
+            for _ in self._executors.controller(call).pick(call.element("object")):
                 self.simulation.tick()
         except BehaviourError as error:
             raise SceneError(f"'{call.element('object')}' cannot be put into the gripper: {error}") from error
@@ -309,8 +255,12 @@ class BehaviourRun:
     def _emit(self, event: str) -> None:
         if self._muted:
             return
+        if self._active is not None:
+            call = self._calls[self._active]
+            self.stamp(emitter(call.part, event) if call.part else event, self._iteration(call))
+            return
         if self.tree is None or not self.tree.active:
-            self.stamp(event, self._iteration)
+            self.stamp(event)
             return
         for node in self.tree.active:
             name = emitter(node, event)

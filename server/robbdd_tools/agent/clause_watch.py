@@ -213,9 +213,12 @@ class ClauseWatch:
         in_tree = self._spec.tree is not None
         for index, (line, call) in enumerate(self._watched.calls.items(), start=1):
             names = call.behaviour.events[0], call.behaviour.events[-1]
+            iteration = iteration_of(self._known.get(line)) if call.part else index
+            if call.part:
+                names = emitter(call.part, names[0]), emitter(call.part, names[1])
             if self._spec.node:
                 names = emitter(self._spec.node, START), emitter(self._spec.node, END)
-            own = [stamp for stamp in stamps if in_tree or stamp.iteration == index]
+            own = [stamp for stamp in stamps if in_tree or not iteration or stamp.iteration == iteration]
             begin, end = (min((one.time for one in own if one.name == name), default=None) for name in names)
             found[line] = begin, end
         trace = self._execution.trace

@@ -7,7 +7,7 @@ from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.behaviour_run import BehaviourRun, Call, Timing
+from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.world.engine import TICK
@@ -15,6 +15,7 @@ from robbdd_tools.world.joint_clearance import joint_clearances
 from robbdd_tools.world.passive_joints import opening_records
 
 if TYPE_CHECKING:
+    from robbdd_tools.agent.behaviour_calls import Call, Timing
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
@@ -56,7 +57,7 @@ class Execution:
     @property
     def completed(self) -> int:
         """The number of behaviours that have succeeded."""
-        return self.course.completed
+        return len(self.course.succeeded)
 
     @property
     def broken(self) -> str:
@@ -153,8 +154,8 @@ class Execution:
         """
         tree = self.course.tree
         if tree is None or not self._node:
-            self.advance_until(lambda _: self.completed > index)
-            return self.completed > index
+            self.advance_until(lambda _: index in self.course.succeeded or index in self.course.failures)
+            return index in self.course.succeeded
         self.advance_until(lambda _: tree.is_over(self._node))
         return tree.has_succeeded(self._node)
 
@@ -164,22 +165,24 @@ class Execution:
         found = [
             choice.place
             for choice in course.choices
-            if (self._node in choice.nodes if self._node else choice.iteration == index + 1)
+            if (self._node in choice.nodes if self._node else choice.number == index + 1)
         ]
         return ", ".join(dict.fromkeys(found))
 
-    @property
-    def failure(self) -> str:
-        """The reason why the behaviour failed; empty if it has not failed."""
-        tree = self.course.tree
-        return (tree.failure(self._node) if tree is not None and self._node else "") or self.course.remark
+    def failure(self, index: int) -> str:
+        """Return the reason why behaviour number ``index`` failed; empty if it has not failed."""
+        tree, course = self.course.tree, self.course
+        return (tree.failure(self._node) if tree is not None and self._node else "") or course.failures.get(
+            index, course.remark
+        )
 
-    @property
-    def cut_short(self) -> Verdict | None:
-        """The verdict on a behaviour that had not ended when the execution was stopped."""
-        tree = self.course.tree
-        over = self.course.failed if tree is None or not self._node else tree.is_over(self._node)
-        return None if over else self.course.cut_short
+    def cut_short(self, index: int) -> Verdict | None:
+        """Return the verdict on behaviour number ``index`` if it had not ended when the execution was stopped."""
+        tree, course = self.course.tree, self.course
+        if tree is not None and self._node:
+            return None if tree.is_over(self._node) else course.cut_short
+        over = index in course.failures or (course.failed and index not in course.begun)
+        return None if over else course.cut_short
 
     @property
     def _begun(self) -> bool:

@@ -114,6 +114,7 @@ def _reported(call: BehaviourCall, clause: ClauseSpec, trace: Trace, spec: Scena
     """Return the verdict on a behaviour. It holds if the log reports its last event."""
     last = call.behaviour.events[-1]
     names = [event for event, source in spec.events.items() if source in (last, emitter(spec.node, END))]
+    names = [call.end] if call.part else names
     times = [time for name in names if (time := trace.event_time(name, iteration_of(clause))) is not None]
     if not times:
         return unknown(f"the log does not report the end of the behaviour, '{last}'", Cause.NO_EVENT)

@@ -14,7 +14,7 @@ from robbdd_tools.agent.clause_watch import WatchedClauses
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.feature_wording import remarks_on_wording
 from robbdd_tools.agent.printed_output import finish_output
-from robbdd_tools.agent.shared_executions import SharedExecutions, call_of, calls_of, timing_of
+from robbdd_tools.agent.shared_executions import SharedExecutions, calls_in_order, calls_of, timing_of
 from robbdd_tools.judging.decisions import decide, is_closed, no_step, occurred
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
@@ -43,6 +43,7 @@ from robbdd_tools.world.log_views import verdict_views, views
 from robbdd_tools.world.viewer import NoViewer, Viewer
 
 if TYPE_CHECKING:
+    from robbdd_tools.agent.behaviour_calls import Call
     from robbdd_tools.agent.channel import Channel
     from robbdd_tools.agent.violation_states import ViolationStates
     from robbdd_tools.monitor.contact import Contact
@@ -106,7 +107,7 @@ class ScenarioRun:
             raise self._broken
         if self._execution is None:
             try:
-                calls = [*map(call_of, self._calls.values())] if self._spec.tree is None else calls_of(self._spec)
+                calls = self._own_calls() if self._spec.tree is None else calls_of(self._spec)
                 timing = timing_of(self._spec, self._clauses.values())
                 course = self._courses.course(self._spec, calls, timing)
                 self._execution = Execution(self._spec, calls, timing, course)
@@ -120,6 +121,11 @@ class ScenarioRun:
             except SceneError as error:
                 self._broken = error
                 raise
+
+    def _own_calls(self) -> list[Call]:
+        """Return the behaviours of the feature's steps. Raises ``SceneError``."""
+        steps = {**self._calls, **{line: EventOccurrence(event) for line, event in self._events.items()}}
+        return calls_in_order((steps[line], self._known.get(line)) for line in sorted(steps))
 
     def _report_left_out(self, execution: Execution) -> None:
         """Report each element that is not simulated once."""
@@ -164,10 +170,11 @@ class ScenarioRun:
                 return _broken(execution)
             if execution.trace.unreached:
                 return unknown(execution.trace.unreached, Cause.UNREACHED)
-            if execution.cut_short is not None:
-                return execution.cut_short
+            stopped = execution.cut_short(index)
+            if stopped is not None:
+                return stopped
             chosen = f" (the chosen place was {place})" if place else ""
-            return Verdict(Outcome.VIOLATED, reason=execution.failure + chosen)
+            return Verdict(Outcome.VIOLATED, reason=execution.failure(index) + chosen)
 
         return self._judged(line, text, verdict)
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.behaviour_run import TIMEOUT, BehaviourRun, Call, Timing
+from robbdd_tools.agent.behaviour_calls import TIMEOUT, Call, Timing
+from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.contacts import TOUCH
 from robbdd_tools.judging.quantities import fluents_with_quantity
-from robbdd_tools.judging.scenario_clauses import behaviour_calls
+from robbdd_tools.judging.scenario_clauses import iteration_of, statement_of
 from robbdd_tools.monitor.time import After, Before
-from robbdd_tools.protocol.clauses import AnyOf, BehaviourCall, Clause, fluents_of
+from robbdd_tools.protocol.clauses import AnyOf, BehaviourCall, Clause, EventOccurrence, Statement, fluents_of
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
-    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 LEAD = 0.5
 """Minimum seconds between the scenario's start and its first behaviour."""
@@ -52,7 +54,28 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
     """
     if spec.tree is not None:
         return [Call(leaf.behaviour, leaf.arguments) for leaf in spec.tree.leaves() if leaf.behaviour]
-    return [call_of(call) for call in behaviour_calls(spec)]
+    return calls_in_order((statement_of(clause), clause) for clause in spec.clauses)
+
+
+def calls_in_order(steps: Iterable[tuple[Statement | None, ClauseSpec | None]]) -> list[Call]:
+    """Return the behaviours among the steps of a scenario, each with the events that it awaits.
+
+    A step has its clause, unless a person added it. In a When with one behaviour, events are not awaited but observed.
+    Raises ``SceneError``.
+    """
+    found: list[Call] = []
+    awaited: tuple[str, ...] = ()
+    for statement, known in steps:
+        match statement:
+            case EventOccurrence(event):
+                awaited = (*awaited, event)
+            case BehaviourCall():
+                call = replace(call_of(statement), iteration=iteration_of(known) or (1 if statement.part else 0))
+                found.append(replace(call, awaited=awaited) if call.part else call)
+                awaited = ()
+            case _:
+                pass
+    return found
 
 
 def call_of(call: BehaviourCall) -> Call:
@@ -70,7 +93,7 @@ def call_of(call: BehaviourCall) -> Call:
         if not found:
             raise SceneError(f"'{call.behaviour.name}' has no {slot.name} to choose: the set is empty")
         arguments[slot.name] = found
-    return Call(call.behaviour.name, arguments)
+    return Call(call.behaviour.name, arguments, call.part, call.is_meanwhile)
 
 
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:

@@ -13,6 +13,7 @@ from robbdd_tools.base.files import load_bytes
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.judging.parsed_sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def register() -> None:
         behave.step(NOT)(_judge)
         behave.step(GROUP)(_judge)
         for behaviour in load_catalog().behaviours.values():
-            behave.step(sentence_pattern(behaviour.sentence))(_execute)
+            behave.step(f"(?:{MEANWHILE})?{sentence_pattern(behaviour.sentence)}")(_execute)
         behave.step(OCCURS)(_await_event)
     finally:
         matchers.use_step_matcher("parse")

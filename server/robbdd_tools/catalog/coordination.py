@@ -10,9 +10,15 @@ from robbdd_tools.catalog.executable import Implementation
 START, END = "start", "end"
 """Events that a node emits at its first tick, and on success."""
 
+EXTERNAL = "external"
+"""Emitter of an event of the environment, such as an operator's. Nothing simulates it; a log may report it."""
+
 
 def emitter(node: str, event: str) -> str:
-    """Return the emitter of an event inside a node, which is the node itself or the behaviour that it executes."""
+    """Return the emitter of an event inside a node, which is the node itself or the behaviour that it executes.
+
+    In a When with several behaviours, ``node`` is the IRI of the clause of one of them.
+    """
     return f"{node} {event}"
 
 

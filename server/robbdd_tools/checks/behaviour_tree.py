@@ -34,6 +34,7 @@ class Link:
     uri: str
     span: Span
     is_repeated: bool
+    has_siblings: bool
 
 
 def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -43,6 +44,13 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             message = (
                 "one node cannot execute a behaviour that is repeated for all elements of a set: "
                 "remove the link, or state the behaviour outside of 'for all'"
+            )
+            fixes = tuple(_without(snapshot, link, "Remove the link"))
+            yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
+        elif link.has_siblings:
+            message = (
+                "a When with several behaviours states their order itself, so none of them is linked to a node: "
+                "remove the link, or write one template for each node"
             )
             fixes = tuple(_without(snapshot, link, "Remove the link"))
             yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
@@ -108,7 +116,7 @@ def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
     root = declaration.tree
     if isinstance(root, tree.Template) and not declaration.faults and root.body.when is not None:
         use = root.body.when.behaviour
-        if use.node is None and use.name.span.start < use.name.span.end:
+        if use.node is None and not root.body.when.more and use.name.span.start < use.name.span.end:
             yield use
 
 
@@ -138,20 +146,28 @@ def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:
 def links_in(file: FileAnalysis) -> Iterator[Link]:
     """Yield the links of a file to nodes, in text order."""
     for placed in file.declarations:
-        for use, node, is_repeated in _linked_uses(placed.declaration):
+        for use, node, repeated, siblings in _linked_uses(placed.declaration):
             target = placed.targets.get(node)
             if target is not None:
                 span = node.span.shifted(placed.offset)
-                yield Link((target.uri, target.symbol.path), use, file.document.uri, span, is_repeated)
+                yield Link((target.uri, target.symbol.path), use, file.document.uri, span, repeated, siblings)
 
 
 @kept_with_key
-def _linked_uses(declaration: Declaration) -> tuple[tuple[tree.BehaviourUse, tree.Ref, bool], ...]:
-    """Return the linked behaviours of a template with their nodes, and whether they are repeated."""
+def _linked_uses(declaration: Declaration) -> tuple[tuple[tree.BehaviourUse, tree.Ref, bool, bool], ...]:
+    """Return the linked behaviours of a template with their nodes.
+
+    The last two values state whether the behaviour is repeated, and whether its When has several behaviours.
+    """
     root = declaration.tree
     if not isinstance(root, tree.Template):
         return ()
     loops = (loop for loop in walk(root) if isinstance(loop, tree.ForAll))
     repeated = {inner.span for loop in loops for inner in walk(loop) if isinstance(inner, tree.BehaviourUse)}
-    uses = (use for use in walk(root) if isinstance(use, tree.BehaviourUse))
-    return tuple((use, use.node, use.span in repeated) for use in uses if use.node is not None)
+    whens = [node for node in walk(root) if isinstance(node, tree.When)]
+    return tuple(
+        (use, use.node, use.span in repeated, bool(when.more))
+        for when in whens
+        for use in when.behaviours
+        if use.node is not None
+    )

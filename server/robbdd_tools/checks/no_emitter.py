@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -29,15 +30,17 @@ class _Emitters:
     """The events that an execution of a template emits.
 
     ``bound`` maps the events that delimit the scenario and its behaviours to their names. ``inner`` are the events of
-    the behaviours, by their names in the catalog.
+    the behaviours, by their names in the catalog; ``ambiguous`` are those that several behaviours of a When emit.
     """
 
     bound: dict[Key, str] = field(default_factory=dict[Key, str])
     inner: dict[str, None] = field(default_factory=dict[str, None])
+    ambiguous: dict[str, None] = field(default_factory=dict[str, None])
 
     def emits(self, event: Definition) -> bool:
         """Return whether a run emits an event."""
-        return _key(event) in self.bound or inner_event(event.symbol.name, self.inner) is not None
+        moment = inner_event(event.symbol.name, self.inner)
+        return _key(event) in self.bound or (moment is not None and moment not in self.ambiguous)
 
 
 def no_emitter(site: Site) -> Iterator[Diagnostic]:
@@ -61,6 +64,11 @@ def _emitters(site: Site, template: tree.Template) -> _Emitters:
             event = site.target(ref)
             if event is not None:
                 found.bound.setdefault(_key(event), ref.path)
+    for when in (node for node in walk(template) if isinstance(node, tree.When) and node.more):
+        moments = Counter(
+            moment for use in when.behaviours for moment in load_catalog().behaviours[use.action.word].events
+        )
+        found.ambiguous |= dict.fromkeys(moment for moment, number in moments.items() if number > 1)
     for behaviour in behaviours:
         events = load_catalog().behaviours[behaviour.action.word].events
         found.inner |= dict.fromkeys(events)
@@ -77,7 +85,13 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
         if event is None or emitters.emits(event):
             continue
         names = list(emitters.bound.values())
+        moment = inner_event(event.symbol.name, emitters.ambiguous)
         message = not_emitted(ref.path, names, emitters.inner)
+        if moment is not None:
+            message = (
+                f"several behaviours of the When emit '{moment}', so that the clause of '{ref.path}' stays unknown: "
+                f"state which one it is by 'emits {moment} as <{ref.path}>'"
+            )
         near = get_close_matches(ref.path, names, n=MAX_OFFERED, cutoff=0.0)
         fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
         yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)

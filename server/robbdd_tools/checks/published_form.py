@@ -135,7 +135,8 @@ class _Rewriter:
     def _body(self, body: tree.Body) -> Iterator[Change]:
         yield from self._clauses(body.given)
         if body.when is not None:
-            yield from self._behaviour(body.when.behaviour)
+            for use in body.when.behaviours:
+                yield from self._behaviour(use)
         if body.for_all is not None:
             yield from self._body(body.for_all.body)
         yield from self._clauses(body.then)

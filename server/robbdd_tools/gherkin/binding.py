@@ -68,7 +68,11 @@ class Binder:
                 places = [clause.arguments.get(slot.name) for slot in behaviour.slots if slot.kind is Kind.WORKSPACE]
                 any_place = {place: self._any_of(place, values) for place in places if isinstance(place, Iri)}
                 slots = (slot.name for slot in behaviour.slots)
-                return stated.BehaviourCall(behaviour, self._slots(slots, clause.arguments, {**values, **any_place}))
+                arguments = self._slots(slots, clause.arguments, {**values, **any_place})
+                if not clause.has_siblings:
+                    return stated.BehaviourCall(behaviour, arguments)
+                limits = self.curie(clause.start), self.curie(clause.end)
+                return stated.BehaviourCall(behaviour, arguments, clause.iri, *limits, clause.together is not None)
             case EventClause():
                 return stated.EventOccurrence(self.curie(clause.event))
             case _:

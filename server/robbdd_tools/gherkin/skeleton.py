@@ -29,6 +29,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.monitor.time import Before, During
+from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.protocol.time_words import instant_words, interval_words
 
 HEAD = '''"""Steps of {name} for a robot or simulator of your own."""
@@ -130,7 +131,8 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
             case EventClause():
                 yield _pattern("when", 'event "{event}" occurs')
             case BehaviourClause():
-                yield _pattern("when", load_catalog().behaviours[clause.behaviour].sentence)
+                lead = "" if clause.together is None else MEANWHILE
+                yield _pattern("when", f"{lead}{load_catalog().behaviours[clause.behaviour].sentence}")
             case Fluent():
                 sentence = load_catalog().predicates[clause.predicate].sentence
                 yield _pattern(clause.role, f"{sentence}{_condition(clause)} {_time(clause)}")

@@ -20,6 +20,7 @@ from robbdd_tools.graph.acceptance_model import (
     Junction,
 )
 from robbdd_tools.protocol import clauses as stated
+from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.protocol.time_words import time_words
 
 if TYPE_CHECKING:
@@ -105,6 +106,6 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
         case stated.Junction(operator, operands):
             return f"( {f' {operator} '.join(sentence(operand, within=True) for operand in operands)} )"
         case stated.BehaviourCall(behaviour, arguments):
-            return filled(behaviour.sentence, arguments)
+            return f"{MEANWHILE if statement.is_meanwhile else ''}{filled(behaviour.sentence, arguments)}"
         case stated.EventOccurrence(event):
             return f'event "{event}" occurs'

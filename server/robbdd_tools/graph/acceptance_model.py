@@ -104,6 +104,8 @@ class BehaviourClause:
     - ``start`` and ``end``: the events of its duration.
     - ``node``: the node of a behaviour tree that executes it, if any.
     - ``emits``: maps the behaviour's own events (``pick-end``) to events of the model, in written order.
+    - ``together``: the clause of the behaviour at the same time as which it is executed (``meanwhile``), if any.
+    - ``has_siblings``: true if its ``When`` has several behaviours.
     """
 
     iri: Iri
@@ -113,6 +115,8 @@ class BehaviourClause:
     end: Iri
     node: Iri | None = None
     emits: tuple[tuple[str, Iri], ...] = ()
+    together: Iri | None = None
+    has_siblings: bool = False
 
 
 @dataclass(frozen=True, slots=True)

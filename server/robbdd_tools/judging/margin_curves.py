@@ -49,6 +49,9 @@ def behaviour_curves(
     ``node`` is the node of the behaviour tree that executes the behaviour, if any. ``iteration`` is 0 for a behaviour
     that is executed once.
     """
+    if call.part:
+        begin, end = (trace.event_time(name, iteration) for name in (call.start, call.end))
+        return () if begin is None else (Curve(begin, begin if end is None else max(begin, end)),)
     limits = call.behaviour.events[0], call.behaviour.events[-1]
     if node:
         limits = emitter(node, START), emitter(node, END)

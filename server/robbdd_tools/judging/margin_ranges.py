@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.coordination import START, emitter
 from robbdd_tools.judging.decisions import decide, ranges
-from robbdd_tools.judging.scenario_clauses import behaviour_calls
+from robbdd_tools.judging.scenario_clauses import behaviour_calls, iteration_of
 from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Outcome
@@ -73,11 +73,13 @@ def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | 
     if spec.node:
         emitting = emitter(spec.node, START)
     else:
-        calls = behaviour_calls(spec)
-        number = stated.iterations[0] if stated.iterations else 1
-        if len(calls) < number:
+        number = stated.iterations[0] if stated.iterations else 0
+        first = next((call for call, known in behaviour_calls(spec) if iteration_of(known) in (0, number)), None)
+        if first is None:
             return None
-        emitting = calls[number - 1].behaviour.events[0]
+        if first.part:
+            return trace.event_time(first.start, number)
+        emitting = first.behaviour.events[0]
     names = [event for event, emits in spec.events.items() if emits == emitting]
     return trace.event_time(names[0], stated.iterations[0] if stated.iterations else 0) if names else None
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.clauses import (
+    MEANWHILE,
     AnyOf,
     BehaviourCall,
     Clause,
@@ -60,9 +61,10 @@ def read_step(role: str, text: str, wording: int = WORDING) -> Statement | None:
         return read_clause(text, wording)
     if (match := re.fullmatch(OCCURS, text)) is not None:
         return EventOccurrence(match["event"])
+    words = text.removeprefix(MEANWHILE)
     for behaviour, pattern in _behaviours():
-        if (match := pattern.fullmatch(text)) is not None:
-            return BehaviourCall(behaviour, _fillers(match, behaviour.slots))
+        if (match := pattern.fullmatch(words)) is not None:
+            return BehaviourCall(behaviour, _fillers(match, behaviour.slots), is_meanwhile=words != text)
     return None
 
 

@@ -53,10 +53,10 @@ def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
     return judged_clause(statement, known, spec)
 
 
-def behaviour_calls(spec: ScenarioSpec) -> list[BehaviourCall]:
-    """Return the behaviours of a scenario in execution order."""
-    statements = (statement_of(clause) for clause in spec.clauses if clause.role == "when")
-    return [statement for statement in statements if isinstance(statement, BehaviourCall)]
+def behaviour_calls(spec: ScenarioSpec) -> list[tuple[BehaviourCall, ClauseSpec]]:
+    """Return the behaviours of a scenario in execution order, each with its clause."""
+    statements = ((statement_of(clause), clause) for clause in spec.clauses if clause.role == "when")
+    return [(statement, clause) for statement, clause in statements if isinstance(statement, BehaviourCall)]
 
 
 def iteration_of(known: ClauseSpec | None) -> int:
@@ -66,6 +66,9 @@ def iteration_of(known: ClauseSpec | None) -> int:
 
 def _with_iris(statement: Statement | None, known: ClauseSpec) -> Statement | None:
     """Return the statement of a parsed sentence in which the fluents and texts have the IRIs of ``known``, in order."""
+    if isinstance(statement, BehaviourCall) and isinstance(known.statement, BehaviourCall):
+        own = known.statement
+        return replace(statement, part=own.part, start=own.start, end=own.end)
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         return statement
     return _named(statement, iter(known.parts or (known.iri,)))

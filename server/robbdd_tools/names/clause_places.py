@@ -47,7 +47,7 @@ def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
         name = variant.definition.symbol.name
         walk = _Walk(variant.iri.removesuffix(name), variant.definition.symbol.path, variant.site.placed.offset)
         yield from walk.top(variant.node.given, "given", "")
-        yield from walk.occurrences(variant.node.events, "")
+        yield from walk.occurrences(variant.node.events, tree.when_path("", 0))
         yield from walk.top(variant.node.then, "then", "")
 
 
@@ -62,10 +62,11 @@ class _Walk:
     def body(self, body: tree.Body, path: str) -> Iterator[PlacedClause]:
         yield from self.top(body.given, "given", path)
         if body.when is not None:
-            yield from self.occurrences(body.when.events, path)
-            use = body.when.behaviour
-            behaviour = self._placed("when-bhv", f"{path}.when", use, use.name.text)
-            yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))
+            for number, step in enumerate(body.when.steps):
+                inner, use = tree.when_path(path, number), step.behaviour
+                yield from self.occurrences(step.events, inner)
+                behaviour = self._placed("when-bhv", inner, use, use.name.text)
+                yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))
         if body.for_all is not None:
             inner = f"{path}.all"
             yield self._placed("forall", inner, body.for_all, "for all")
@@ -81,7 +82,7 @@ class _Walk:
 
     def occurrences(self, events: Sequence[tree.Occurrence], path: str) -> Iterator[PlacedClause]:
         for index, occurrence in enumerate(events):
-            yield self._placed("when-evt", f"{path}.when.{index}", occurrence, "event")
+            yield self._placed("when-evt", f"{path}.{index}", occurrence, "event")
 
     def _each(self, parts: Sequence[tree.Expression], path: str) -> Iterator[PlacedClause]:
         if path.count(".") <= MAX_NESTED:

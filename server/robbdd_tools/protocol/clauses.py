@@ -24,6 +24,8 @@ class AnyOf:
     elements: tuple[str, ...]
 
 
+MEANWHILE = "meanwhile "
+"""Begins the sentence of a behaviour that is executed at the same time as the behaviour before it."""
 Filler = str | tuple[str, ...] | AnyOf
 """Value of a slot: an element or a value, a set, or any element of a set."""
 
@@ -76,10 +78,19 @@ class Junction:
 
 @dataclass(frozen=True, slots=True)
 class BehaviourCall:
-    """A behaviour with the values of its slots."""
+    """A behaviour with the values of its slots.
+
+    In a When with several behaviours, ``part`` is the IRI of its clause, which distinguishes its events from those of
+    the others, and ``start`` and ``end`` are the events of its duration. ``is_meanwhile`` states whether it is executed
+    at the same time as the behaviour before it.
+    """
 
     behaviour: Behaviour
     arguments: Mapping[str, Filler]
+    part: str = ""
+    start: str = ""
+    end: str = ""
+    is_meanwhile: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +130,10 @@ def to_plain(statement: Statement) -> dict[str, Any]:
         case Junction(operator, operands):
             return {"operator": operator, "operands": [to_plain(operand) for operand in operands]}
         case BehaviourCall(behaviour, arguments):
-            return {"behaviour": behaviour.name, "arguments": _plain_arguments(arguments)}
+            plain: dict[str, Any] = {"behaviour": behaviour.name, "arguments": _plain_arguments(arguments)}
+            if statement.part:
+                plain |= {"part": statement.part, "from": statement.start, "until": statement.end}
+            return {**plain, "meanwhile": True} if statement.is_meanwhile else plain
         case EventOccurrence(event):
             return {"event": event}
 
@@ -131,7 +145,9 @@ def from_plain(data: Mapping[str, Any]) -> Statement:
     """
     match data:
         case {"behaviour": str(name), "arguments": arguments}:
-            return BehaviourCall(load_catalog().behaviours[name], _arguments(arguments))
+            part, start, end = (str(data.get(key, "")) for key in ("part", "from", "until"))
+            behaviour, meanwhile = load_catalog().behaviours[name], bool(data.get("meanwhile", False))
+            return BehaviourCall(behaviour, _arguments(arguments), part, start, end, meanwhile)
         case {"event": str(event)}:
             return EventOccurrence(event)
         case _:

@@ -9,15 +9,15 @@ from robbdd_tools.protocol.clauses import BehaviourCall
 
 
 def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
-    """Return the scope of each behaviour step of a scenario, in execution order."""
-    return [step.scope for step in steps if isinstance(step.statement, BehaviourCall)]
+    """Return the scopes of a scenario's behaviour steps in execution order. The behaviours of a When share one."""
+    return list(dict.fromkeys(step.scope for step in steps if isinstance(step.statement, BehaviourCall)))
 
 
 def iterations_of(scope: Scope, behaviours: Sequence[Scope]) -> tuple[int, ...]:
-    """Return the numbers (from 1) of the first and the last behaviour in a scope.
+    """Return the numbers (from 1) of the first and the last iteration in a scope.
 
     If the scope contains no behaviour, the nearest outer scope that contains one is used. The result is empty for a
-    scenario with a single behaviour, because all events of the scenario belong to that behaviour.
+    scenario with a single iteration, because all events of the scenario belong to it.
     """
     if len(behaviours) < 2:
         return ()

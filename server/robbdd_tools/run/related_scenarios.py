@@ -115,7 +115,9 @@ _Link = tuple[Variant, Execution | None, int, BehaviourClause, Iri]
 
 def linked_behaviour(variant: Variant) -> BehaviourClause | None:
     """Return the behaviour that links a variant to a behaviour tree, if any."""
-    return next((one for one in variant.template.clauses if isinstance(one, BehaviourClause) and one.node), None)
+    found = (one for one in variant.template.clauses if isinstance(one, BehaviourClause))
+    # A When with several behaviours states their order itself.
+    return next((one for one in found if one.node and not one.has_siblings), None)
 
 
 def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterator[_Link]:

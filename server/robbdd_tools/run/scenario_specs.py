@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from robbdd_tools.catalog.coordination import END, START, emitter
-from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.background_tables import elements_of
@@ -15,7 +13,6 @@ from robbdd_tools.gherkin.feature import ScenarioText
 from robbdd_tools.gherkin.steps import Step
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
-    BehaviourClause,
     Cell,
     Clause,
     Execution,
@@ -25,16 +22,15 @@ from robbdd_tools.graph.acceptance_model import (
     Junction,
     SceneModel,
     Variant,
-    every_clause,
-    named_events,
 )
 from robbdd_tools.graph.read.clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, leaves_of
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
+from robbdd_tools.run.emitters import emitters_of
 from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
-from robbdd_tools.run.related_scenarios import Linked, Relations
+from robbdd_tools.run.related_scenarios import Relations
 from robbdd_tools.run.seeds import scenario_seed
 from robbdd_tools.run.tree_specs import TreeSpecWriter
 
@@ -191,7 +187,7 @@ class SpecWriter:
             (*scene.objects, *(thing for carriers in scene.carriers.values() for thing in carriers)),
             self._named(scene.carriers),
             self._named(scene.contains),
-            {self._curie(event): emits for event, emits in _events(variant, self._relations.node(variant)).items()},
+            {self._curie(event): emits for event, emits in emitters_of(variant, self._relations.node(variant)).items()},
             None if variant.instance is None else self._instance(variant.instance),
         )
 
@@ -275,36 +271,3 @@ def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values)
 
 def _value(term: Iri | str, values: Values) -> Cell:
     return values.get(term, term) if isinstance(term, Iri) else term
-
-
-def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
-    """Map each event of the model to its emitter.
-
-    The execution emits the events of the template's duration. A behaviour's duration is emitted by the behaviour's
-    first and last event. For any other event, the emitter is the behaviour event that the model states (``emits``), or
-    the behaviour event with the same name (``inner_event``). In a scenario that is ``linked`` to a node of a behaviour
-    tree, that node emits the duration, unless it is the root.
-    """
-    template = variant.template
-    bound = {template.start: "scenario-start", template.end: "scenario-end"}
-    if linked is not None and not linked.is_root:
-        bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
-    behaviours = load_catalog().behaviours
-    emitted: dict[str, None] = {}
-    stated: dict[Iri, str] = {}
-    clauses = tuple(every_clause((*template.clauses, *variant.clauses)))
-    for clause in clauses:
-        if isinstance(clause, BehaviourClause):
-            events = behaviours[clause.behaviour].events
-            emitted |= dict.fromkeys(events)
-            first, last = events[0], events[-1]
-            if linked is not None:
-                first, last = emitter(linked.node, START), emitter(linked.node, END)
-            bound |= {clause.start: first, clause.end: last}
-            stated |= {event: moment for moment, event in clause.emits if moment in events}
-    for clause in clauses:
-        for event in named_events(clause):
-            name = stated.get(event) or inner_event(event, emitted)
-            if name is not None:
-                bound.setdefault(event, name if linked is None else emitter(linked.node, name))
-    return bound

@@ -172,11 +172,39 @@ class BehaviourUse(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Further(Node):
+    """``then event <e> occurs Behaviour …`` or ``meanwhile Behaviour …``; ``link`` is the keyword."""
+
+    link: str
+    events: tuple[Occurrence, ...]
+    behaviour: BehaviourUse
+
+
+@dataclass(frozen=True, slots=True)
 class When(Node):
-    """``When:`` with its events and its behaviour."""
+    """``When:`` with its events and its behaviour, and further behaviours after it or at the same time."""
 
     events: tuple[Occurrence, ...]
     behaviour: BehaviourUse
+    more: tuple[Further, ...]
+
+    @property
+    def steps(self) -> tuple[When | Further, ...]:
+        """The parts of the ``When`` that have one behaviour each, in written order."""
+        return (self, *self.more)
+
+    @property
+    def behaviours(self) -> tuple[BehaviourUse, ...]:
+        """The behaviours in written order."""
+        return tuple(step.behaviour for step in self.steps)
+
+
+def when_path(path: str, number: int) -> str:
+    """Return the path of part ``number`` (from 0) of a ``When``; nodes of the graph are named after it.
+
+    ``path`` is the path of the body. The first part keeps the name that a ``When`` with one behaviour has.
+    """
+    return f"{path}.when{number + 1 if number else ''}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,19 +97,26 @@ class _Namer:
                 return expression
 
     def _when(self, when: When, body: Body) -> When:
-        behaviour: BehaviourUse = when.behaviour
-        if not behaviour.name.text:
-            name = replace(behaviour.name, text=f"{self.owner}-{behaviour.action.word}")
-            behaviour = replace(behaviour, name=name)
-        if behaviour.duration is None:
-            behaviour = replace(behaviour, duration=_duration(behaviour, body))
-        return replace(when, behaviour=behaviour)
+        taken = {use.name.text for use in when.behaviours}
+        first = self._behaviour(when.behaviour, taken)
+        if first.duration is None and not when.more:
+            first = replace(first, duration=_duration(first, body))
+        more = tuple(replace(step, behaviour=self._behaviour(step.behaviour, taken)) for step in when.more)
+        return replace(when, behaviour=first, more=more)
+
+    def _behaviour(self, use: BehaviourUse, taken: set[str]) -> BehaviourUse:
+        if use.name.text:
+            return use
+        base = f"{self.owner}-{use.action.word}"
+        free = next(name for name in (base, *(f"{base}-{number}" for number in count(2))) if name not in taken)
+        taken.add(free)
+        return replace(use, name=replace(use.name, text=free))
 
 
 def _behaviour(body: Body) -> BehaviourUse | None:
-    """Return the behaviour of a body or its nested bodies."""
+    """Return the behaviour of a body or its nested bodies, if there is only one."""
     if body.when is not None:
-        return body.when.behaviour
+        return None if body.when.more else body.when.behaviour
     return None if body.for_all is None else _behaviour(body.for_all.body)
 
 

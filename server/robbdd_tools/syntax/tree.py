@@ -16,6 +16,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Expression,
     Fluent,
     ForAll,
+    Further,
     Negation,
     Occurrence,
     PhraseUse,
@@ -40,6 +41,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Variant,
     When,
     bare,
+    when_path,
 )
 from robbdd_tools.syntax.bddx_tree import (
     Between,
@@ -201,6 +203,7 @@ __all__ = [
     "ForAll",
     "Frame",
     "FrameAxis",
+    "Further",
     "Graph",
     "GreaterThan",
     "Gripper",
@@ -293,4 +296,5 @@ __all__ = [
     "Vector",
     "When",
     "bare",
+    "when_path",
 ]

@@ -44,6 +44,10 @@ SOME_TIME = "rbw:AtSomeTime"
 OCCURRENCE = "rbw:occurrence"
 HORIZON_VARIABLE = "rbw:horizon-variable"
 """Class of a time constraint that must hold at some time in its window instead of throughout."""
+TOGETHER = "rbw:together-with"
+"""The behaviour in the same When, written before it, at the same time as which a behaviour is executed."""
+FURTHER_BEHAVIOUR = "rbw:further-behaviour"
+"""The behaviours of a scenario besides the first one."""
 ELEMENT_TYPES = {"object": "env:Object", "workspace": "env:Workspace", "agent": "agn:Agent"}
 """Kind of an element → its class."""
 MEMBERSHIPS = {

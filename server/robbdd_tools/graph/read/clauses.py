@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
@@ -22,7 +22,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, expand
+from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, TOGETHER, expand
 from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class ClauseReader:
 
     def clauses(self, owner: str, term: str = "bdd:has-clause", inside: tuple[str, ...] = ()) -> tuple[Clause, ...]:
         """Return the clauses in the list ``term`` of a node ``owner``, in order."""
-        return tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
+        return _linked(tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term)))
 
     def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
         """Return one clause. ``inside`` are the nodes that contain the clause, outermost first."""
@@ -118,7 +118,8 @@ class ClauseReader:
         nodes = records.iris(records.all(behaviour, "rbw:coordination-node"))
         node = nodes[0] if len(nodes) == 1 else None
         arguments, emits = self._arguments(iri, word.slots), tuple(self._emissions(iri))
-        return BehaviourClause(iri, word.name, arguments, Iri(time.start), Iri(time.end), node, emits)
+        together = records.one(iri, TOGETHER) if records.all(iri, TOGETHER) else None
+        return BehaviourClause(iri, word.name, arguments, Iri(time.start), Iri(time.end), node, emits, together)
 
     def _emissions(self, iri: Iri) -> Iterator[tuple[str, Iri]]:
         for emission in self.records.iris(items_of(self.records, iri, "rbw:emission-list")):
@@ -157,6 +158,20 @@ class ClauseReader:
         if self.records.all(iri, "time:horizon-seconds") or not isinstance(self.time(iri), Before | After):
             raise Incomplete(f"{iri} has a horizon that is not exactly one number or variable")
         return self.records.one(iri, HORIZON_VARIABLE)
+
+
+def _linked(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
+    """Return clauses in which the behaviours of a When with several of them are marked.
+
+    Raises ``Incomplete`` if a behaviour is together with another one than that before it.
+    """
+    behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
+    for before, clause in zip((None, *behaviours), behaviours, strict=False):
+        if clause.together is not None and (before is None or before.iri != clause.together):
+            raise Incomplete(f"{clause.iri} is executed together with another behaviour than that before it")
+    if len(behaviours) < 2:
+        return clauses
+    return tuple(replace(one, has_siblings=True) if isinstance(one, BehaviourClause) else one for one in clauses)
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from robbdd_tools.base.quantity_units import is_quantity
@@ -25,6 +25,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol.time_words import occurrence_words
+from robbdd_tools.syntax.bdd_tree import when_path
 
 _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 
@@ -45,16 +46,15 @@ class ClauseText:
     def body(self, clauses: Sequence[Clause], path: str = "") -> str:
         """Return the text of Given, of When or for all, and of Then. Raises ``Incomplete`` if there is no When."""
         loops = [clause for clause in clauses if isinstance(clause, ForAll)]
-        behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
-        events = [clause for clause in clauses if isinstance(clause, EventClause)]
+        parts = list(_when_parts(clauses))
         given = self.conditions(clauses, "given", path)
-        if len(loops) == 1 and not behaviours and not events:
+        if len(loops) == 1 and not parts:
             middle = self._for_all(loops[0], f"{path}.all")
-        elif len(behaviours) == 1 and not loops:
-            inner = [*self.events(events, path), self._behaviour(behaviours[0], path)]
+        elif parts and not loops:
+            inner = [line for number, part in enumerate(parts) for line in self._when_part(part, number, path)]
             middle = "When:\n" + indented("\n".join(inner))
         else:
-            raise Incomplete("its When does not have exactly one behaviour or one 'for all'")
+            raise Incomplete("its When does not have either behaviours or one 'for all'")
         return "".join(f"{part}\n" for part in (given, middle, self.conditions(clauses, "then", path)) if part)
 
     def conditions(self, clauses: Iterable[Clause], role: str, path: str = "") -> str:
@@ -67,11 +67,18 @@ class ClauseText:
             return ""
         return f"{role.capitalize()}:\n{indented(self._joined('and', self._each(chosen, f'{path}.{role}')))}"
 
+    def _when_part(self, part: _WhenPart, number: int, path: str) -> list[str]:
+        inner = when_path(path, number)
+        lines = [*self.events(part.events, inner), self._behaviour(part.behaviour, inner)]
+        if number:
+            lines[0] = f"{'then' if part.behaviour.together is None else 'meanwhile'} {lines[0]}"
+        return lines
+
     def events(self, events: Iterable[EventClause], path: str = "") -> list[str]:
-        """Return the text ``event <e> occurs`` for each event in a When."""
+        """Return the text ``event <e> occurs`` for each event in a part of a When, which has the path ``path``."""
         lines: list[str] = []
         for index, clause in enumerate(events):
-            self._named(clause.iri, "when-evt", f"{path}.when.{index}")
+            self._named(clause.iri, "when-evt", f"{path}.{index}")
             lines.append(f"event {self.names.lazily(clause.event, 'event')} occurs")
         return lines
 
@@ -168,7 +175,7 @@ class ClauseText:
 
     def _behaviour(self, clause: BehaviourClause, path: str) -> str:
         names = self.names
-        self._named(clause.iri, "when-bhv", f"{path}.when")
+        self._named(clause.iri, "when-bhv", path)
         node = names.records.one(clause.iri, "bhv:of-behaviour")
         namespace, local = names.split(node)
         name = local or "behaviour"
@@ -178,13 +185,32 @@ class ClauseText:
         link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"
         moments = [f"\n    emits {moment} as {names.lazily(event, 'event')}" for moment, event in clause.emits]
         for index, emission in enumerate(items_of(names.records, clause.iri, "rbw:emission-list")):
-            self._named(Iri(str(emission)), "emits", f"{path}.when.{index}")
+            self._named(Iri(str(emission)), "emits", f"{path}.{index}")
         return f"{head} {{\n    duration: {duration}\n    {action}{''.join(moments)}{link}\n}}"
 
     def _named(self, node: Iri, kind: str, path: str) -> None:
         made = f"{self.namespace}{kind}-{self.owner}{path}"
         if made != node:
             self.names.renamed[node] = made
+
+
+@dataclass(frozen=True, slots=True)
+class _WhenPart:
+    events: tuple[EventClause, ...]
+    behaviour: BehaviourClause
+
+
+def _when_parts(clauses: Iterable[Clause]) -> Iterator[_WhenPart]:
+    """Yield the behaviours of a When, each with the events before it. Raises ``Incomplete`` if events come last."""
+    events: tuple[EventClause, ...] = ()
+    for clause in clauses:
+        if isinstance(clause, EventClause):
+            events = (*events, clause)
+        elif isinstance(clause, BehaviourClause):
+            yield _WhenPart(events, clause)
+            events = ()
+    if events:
+        raise Incomplete("its When waits for an event after its last behaviour")
 
 
 def template_text(names: Names, reader: ClauseReader, template: Iri, variables: Sequence[Iri]) -> str:

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, TIME_TYPES
+from robbdd_tools.graph.rdf.vocabulary import (
+    FURTHER_BEHAVIOUR,
+    HORIZON_VARIABLE,
+    JUNCTIONS,
+    OCCURRENCE,
+    SOME_TIME,
+    TIME_TYPES,
+    TOGETHER,
+)
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
@@ -45,8 +53,7 @@ class ClauseWriter:
         """Write Given, When or for all, and Then. Return their clauses in order."""
         nodes = self.top(body.given, "given", path)
         if body.when is not None:
-            nodes += self.occurrences(body.when.events, path)
-            nodes += self._behaviour(body.when.behaviour, path)
+            nodes += self._when(body.when, path)
         if body.for_all is not None:
             nodes += self._for_all(body.for_all, f"{path}.all")
         return nodes + self.top(body.then, "then", path)
@@ -61,11 +68,25 @@ class ClauseWriter:
             return self._each(expression.operands, role, path)
         return self._each([expression], role, path)
 
-    def occurrences(self, events: Sequence[tree.Occurrence], path: str = "") -> list[Node]:
-        """Write the clauses ``event <e> occurs``."""
+    def _when(self, when: tree.When, path: str) -> list[Node]:
+        nodes: list[Node] = []
+        together: Node | None = None
+        for number, step in enumerate(when.steps):
+            inner = tree.when_path(path, number)
+            nodes += self.occurrences(step.events, inner)
+            written = self._behaviour(step.behaviour, inner, is_first=step is when)
+            for node in written:
+                if isinstance(step, tree.Further) and step.link == "meanwhile" and together is not None:
+                    self._sink.add(node, TOGETHER, together, self.frame.at(step))
+                together = node
+            nodes += written
+        return nodes
+
+    def occurrences(self, events: Sequence[tree.Occurrence], path: str) -> list[Node]:
+        """Write the clauses ``event <e> occurs``. ``path`` is that of the part of the ``When``."""
         nodes: list[Node] = []
         for index, occurrence in enumerate(events):
-            node = self._generated("when-evt", f"{path}.when.{index}")
+            node = self._generated("when-evt", f"{path}.{index}")
             if node is not None:
                 self._start(node, ["rbw:WhenEvent"], "when", self.frame.at(occurrence))
                 event = self.frame.target(occurrence.event)
@@ -177,23 +198,25 @@ class ClauseWriter:
         self._sink.add(node, "bdd:ref-variable", variable, self.frame.at(name))
         self._sink.add(node, "bdd:in-set", self.frame.target(in_set), self.frame.at(in_set))
 
-    def _behaviour(self, use: tree.BehaviourUse, path: str) -> list[Node]:
+    def _behaviour(self, use: tree.BehaviourUse, path: str, *, is_first: bool) -> list[Node]:
         behaviour = self.frame.node(f"{self.owner}.{use.name.text}")
-        node = self._generated("when-bhv", f"{path}.when")
+        node = self._generated("when-bhv", path)
         scenario = self._sink.iri(self.scenario)
         if behaviour is None or node is None or scenario is None:
             return []
         word = load_catalog().behaviours[use.action.word]
         if self._sink.claim_behaviour(behaviour, word.name, self.frame.at(use.name)):
             self._sink.add_types(behaviour, ["bhv:Behaviour", *word.rdf_types], self.frame.at(use.name))
-        self._sink.add(scenario, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
+        # The published vocabulary has one behaviour for each scenario.
+        of_scenario = "bhv:of-behaviour" if is_first else FURTHER_BEHAVIOUR
+        self._sink.add(scenario, of_scenario, behaviour, self.frame.at(use.name))
         link_behaviour(self.frame, behaviour, use)
         self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))
         self._sink.add(node, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
         self._arguments(node, word.slots, use.action)
         if use.duration is not None:
             self._time(node, use.duration)
-        self._emissions(node, use, f"{path}.when")
+        self._emissions(node, use, path)
         return [node]
 
     def _emissions(self, node: URIRef, use: tree.BehaviourUse, path: str) -> None:

@@ -134,5 +134,5 @@ def _behaviours(body: tree.Body) -> Iterator[tuple[str, str]]:
     inner: tree.Body | None = body
     while inner is not None:
         if inner.when is not None:
-            yield inner.when.behaviour.name.text, inner.when.behaviour.action.word
+            yield from ((use.name.text, use.action.word) for use in inner.when.behaviours)
         inner = None if inner.for_all is None else inner.for_all.body

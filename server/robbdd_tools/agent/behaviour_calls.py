@@ -1,0 +1,92 @@
+"""The behaviours of an execution as data: what is executed, in which order, and for how long."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.world.errors import SceneError
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Arguments
+
+TIMEOUT = 60.0
+"""Seconds of simulated time after which an execution is stopped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A behaviour, by its catalog name, with the names in its slots.
+
+    The place of a behaviour may be a set of workspaces. In a When with several behaviours, ``part`` distinguishes its
+    events from those of the others, ``is_meanwhile`` states whether it is executed at the same time as the call before
+    it, and ``awaited`` are the events (CURIEs) that must occur before it begins. ``iteration`` is the number of its
+    events' iteration; 0 for its own number in the sequence of calls.
+    """
+
+    behaviour: str
+    arguments: Arguments
+    part: str = ""
+    is_meanwhile: bool = False
+    awaited: tuple[str, ...] = ()
+    iteration: int = 0
+
+    def element(self, slot: str) -> str:
+        """Return the single element in a slot. Raises ``SceneError`` if the slot contains a set."""
+        found = self.arguments[slot]
+        if isinstance(found, str):
+            return found
+        raise SceneError(f"'{self.behaviour}' needs one {slot}, not a set of them")
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """The workspaces where the behaviour may place."""
+        found = self.arguments["workspace"]
+        return (found,) if isinstance(found, str) else tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """An element that a behaviour chose from a set of places.
+
+    ``number`` is that of the call (from 1), and ``nodes`` are the nodes of a behaviour tree that it belongs to.
+    """
+
+    number: int
+    nodes: tuple[str, ...]
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """The times of an execution in simulated s.
+
+    They are the minimum idle time before the first behaviour, the time of recording after the scenario's end, and the
+    timeout. ``touching`` are the elements whose contact forces are recorded; a workspace means its objects.
+    """
+
+    lead: float = 0.5
+    tail: float = 0.0
+    timeout: float = TIMEOUT
+    touching: frozenset[str] = frozenset()
+
+
+def groups_of(calls: Sequence[Call]) -> list[list[int]]:
+    """Return the indices of the calls in groups that are executed one after the other.
+
+    The calls of a group are executed at the same time. Raises ``SceneError`` if an agent has two of them.
+    """
+    groups: list[list[int]] = []
+    for index, call in enumerate(calls):
+        if call.is_meanwhile and groups:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    for group in groups:
+        agents: set[str] = set()
+        for agent in (calls[index].element("agent") for index in group) if len(group) > 1 else ():
+            if agent in agents:
+                raise SceneError(f"'{agent}' cannot execute two behaviours at the same time ('meanwhile')")
+            agents.add(agent)
+    return groups

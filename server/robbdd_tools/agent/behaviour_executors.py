@@ -1,0 +1,108 @@
+"""Execute single behaviours: by controllers of the catalog, or by users' own classes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.catalog.executors import TIMED
+from robbdd_tools.world.errors import BehaviourError, SceneError
+from robbdd_tools.world.pick_place import PickPlace
+from robbdd_tools.world.timed_pick_place import TimedPickPlace
+from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.behaviour_calls import Call
+    from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.world.simulation import Simulation
+
+PLACES = 1
+"""Separates the random stream for places from that of the scene, which starts from the same seed."""
+
+
+class BehaviourExecutors:
+    """The executors of a simulation's agents, each of which keeps its state between behaviours.
+
+    ``emit`` is called with the name of each event, ``note_choice`` with the workspace chosen among several.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        implementation: Implementation | None,
+        regions: Regions,
+        emit: Callable[[str], None],
+        note_choice: Callable[[str], None],
+    ) -> None:
+        self._simulation = simulation
+        self._implementation = implementation
+        self._regions = regions
+        self._emit = emit
+        self._note_choice = note_choice
+        self._controllers: dict[str, PickPlace] = {}
+        self._draw = np.random.default_rng((simulation.world.seed, PLACES))
+
+    @property
+    def is_users(self) -> bool:
+        """Whether users' code executes the behaviours."""
+        return self._implementation is not None and self._implementation.kind == "python"
+
+    def attempt(self, call: Call) -> Generator[None, None, BehaviourError | None]:
+        """Execute a behaviour, one control tick for each step of the iterator.
+
+        Returns the reason why the behaviour failed; ``None`` if it succeeded.
+        """
+        try:
+            yield from self._behaviour(call)
+        except BehaviourError as error:
+            return error
+        return None
+
+    def controller(self, call: Call) -> PickPlace:
+        """Return the controller of a behaviour's agent. Raises ``SceneError`` if the scene has no such agent."""
+        agent = call.element("agent")
+        if agent not in self._simulation.robots:
+            raise SceneError(f"the scene has no agent '{agent}'")
+        if agent not in self._controllers:
+            self._controllers[agent] = PickPlace(self._simulation, agent, self._emit, self._note_choice)
+        return self._controllers[agent]
+
+    def refuse_nowhere(self, call: Call) -> None:
+        """Raise ``SceneError`` if no object carries a place of a behaviour.
+
+        In this case, the model is wrong, not the robot.
+        """
+        places = call.places if "workspace" in call.arguments else ()
+        if places and not self.is_users and not any(place in self._regions for place in places):
+            one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"
+            raise SceneError(f"'{call.behaviour}' cannot place at {one}: nothing in the scene carries that workspace")
+
+    def _behaviour(self, call: Call) -> Iterator[None]:
+        controller = self.controller(call)
+        if self._implementation is not None and self.is_users:
+            world = AgentWorld(self._simulation, call.element("agent"), self._emit)
+            return run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
+        match call.behaviour:
+            case "pick":
+                return controller.pick(call.element("object"))
+            case "place":
+                return controller.place(call.element("object"), self._in_any_order(call))
+            case "pick-place" if self._implementation is not None and self._implementation.name == TIMED:
+                return TimedPickPlace(self._simulation, call.element("agent"), self._emit).pick_place(
+                    call.element("object"), call.places
+                )
+            case "pick-place":
+                return controller.pick_place(call.element("object"), self._in_any_order(call))
+            case other:
+                raise BehaviourError(f"no agent of this installation can execute the behaviour '{other}'")
+
+    def _in_any_order(self, call: Call) -> tuple[str, ...]:
+        """Return the places of a behaviour in an order derived from the scenario's seed."""
+        places = call.places
+        if len(places) < 2:
+            return places
+        order: list[int] = self._draw.permutation(len(places)).tolist()
+        return tuple(places[index] for index in order)

@@ -1,0 +1,91 @@
+"""Map the events of a scenario to their emitters: the execution, its behaviours, or nodes of a behaviour tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.coordination import END, EXTERNAL, START, emitter
+from robbdd_tools.catalog.event_names import inner_event
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.acceptance_model import (
+    BehaviourClause,
+    Clause,
+    EventClause,
+    Iri,
+    Variant,
+    every_clause,
+    named_events,
+)
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.related_scenarios import Linked
+
+
+def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
+    """Map each event of the model to its emitter.
+
+    The execution emits the events of the template's duration. A behaviour's duration is emitted by the behaviour's
+    first and last event. For any other event, the emitter is the behaviour event that the model states (``emits``), or
+    the behaviour event with the same name (``inner_event``). In a scenario that is ``linked`` to a node of a behaviour
+    tree, that node emits the duration, unless it is the root.
+
+    If a When has several behaviours, their events are distinguished by the IRIs of their clauses. An event that ends
+    one of them and starts another is emitted by the first. A name that fits events of several behaviours fits none. An
+    awaited event without an emitter is external: only a log can report it.
+    """
+    template = variant.template
+    bound = {template.start: "scenario-start", template.end: "scenario-end"}
+    if linked is not None and not linked.is_root:
+        bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
+    clauses = tuple(every_clause((*template.clauses, *variant.clauses)))
+    behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
+    limits: dict[Iri, str] = {}
+    for clause in behaviours:
+        first, last = _limits(clause, linked)
+        if not clause.has_siblings:
+            bound |= {clause.start: first, clause.end: last}
+            continue
+        for event, name in ((clause.start, first), (clause.end, last)):
+            limits.setdefault(event, name)
+    bound |= limits
+    _bind_inner(bound, clauses, behaviours, linked)
+    if any(clause.has_siblings for clause in behaviours):
+        for clause in clauses:
+            if isinstance(clause, EventClause):
+                bound.setdefault(clause.event, EXTERNAL)
+    return bound
+
+
+def _limits(clause: BehaviourClause, linked: Linked | None) -> tuple[str, str]:
+    """Return the emitters of the start and the end of a behaviour's duration."""
+    events = load_catalog().behaviours[clause.behaviour].events
+    first, last = (events[0], events[-1]) if linked is None else (START, END)
+    return _emitter(first, clause, linked), _emitter(last, clause, linked)
+
+
+def _emitter(moment: str, clause: BehaviourClause, linked: Linked | None) -> str:
+    """Return the emitter of a behaviour's own event."""
+    if linked is not None:
+        return emitter(linked.node, moment)
+    return emitter(clause.iri, moment) if clause.has_siblings else moment
+
+
+def _bind_inner(
+    bound: dict[Iri, str], clauses: Iterable[Clause], behaviours: Iterable[BehaviourClause], linked: Linked | None
+) -> None:
+    """Add the emitters of events that a model states by ``emits``, or names as an event of a behaviour."""
+    stated: dict[Iri, str] = {}
+    emitted: dict[str, set[str]] = {}
+    for clause in behaviours:
+        events = load_catalog().behaviours[clause.behaviour].events
+        for moment in events:
+            emitted.setdefault(moment, set()).add(_emitter(moment, clause, linked))
+        stated |= {event: _emitter(moment, clause, linked) for moment, event in clause.emits if moment in events}
+    single = {moment: next(iter(names)) for moment, names in emitted.items() if len(names) == 1}
+    for clause in clauses:
+        for event in named_events(clause):
+            moment = inner_event(event, single)
+            name = stated.get(event) or (None if moment is None else single[moment])
+            if name is not None:
+                bound.setdefault(event, name)
