@@ -77,7 +77,9 @@ def test_a_repeated_behaviour_is_no_single_nodes() -> None:
 
 
 def test_a_behaviour_with_siblings_belongs_to_no_node() -> None:
-    second = "\n        then Behaviour (ns=t) more { duration: from <pick-start> until <place-end> <robot> picks <part> }\n    Then:"
-    marked = "node: <handling.pick>\n//                 ^^^^^^^^^^^^^ behaviour-tree several behaviours states their order itself\n"
+    lasting = "duration: from <pick-start> until <place-end>"
+    second = f"\n        then Behaviour (ns=t) more {{ {lasting} <robot> picks <part> }}\n    Then:"
+    finding = "behaviour-tree several behaviours states their order itself"
+    marked = f"node: <handling.pick>\n//                 ^^^^^^^^^^^^^ {finding}\n"
     template = linked("pick").replace("    Then:", second, 1).replace("node: <handling.pick>\n", marked)
     check(EVENTS + TREE.replace("        node place\n", "") + template + STORY)

@@ -36,9 +36,8 @@ def test_events_of_the_behaviour_are_emitted_by_name(event: str) -> None:
 
 
 def test_a_name_that_fits_several_behaviours_of_a_when_needs_emits() -> None:
-    other = (
-        "then Behaviour (ns=t) more { duration: from <pick-start> until <place-end> <robot> picks <part> }\n    Then:"
-    )
+    lasting = "duration: from <pick-start> until <place-end>"
+    other = f"then Behaviour (ns=t) more {{ {lasting} <robot> picks <part> }}\n    Then:"
     text = waiting("evt-pick-end").replace("Then:", other, 1)
     (finding,) = found(text, "syntax", CODE)
     assert finding.message.startswith("several behaviours of the When emit 'pick-end'")

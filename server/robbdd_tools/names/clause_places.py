@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.when_paths import when_path
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -47,7 +48,7 @@ def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
         name = variant.definition.symbol.name
         walk = _Walk(variant.iri.removesuffix(name), variant.definition.symbol.path, variant.site.placed.offset)
         yield from walk.top(variant.node.given, "given", "")
-        yield from walk.occurrences(variant.node.events, tree.when_path("", 0))
+        yield from walk.occurrences(variant.node.events, when_path("", 0))
         yield from walk.top(variant.node.then, "then", "")
 
 
@@ -63,7 +64,7 @@ class _Walk:
         yield from self.top(body.given, "given", path)
         if body.when is not None:
             for number, step in enumerate(body.when.steps):
-                inner, use = tree.when_path(path, number), step.behaviour
+                inner, use = when_path(path, number), step.behaviour
                 yield from self.occurrences(step.events, inner)
                 behaviour = self._placed("when-bhv", inner, use, use.name.text)
                 yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))

@@ -41,7 +41,6 @@ from robbdd_tools.syntax.bdd_tree import (
     Variant,
     When,
     bare,
-    when_path,
 )
 from robbdd_tools.syntax.bddx_tree import (
     Between,
@@ -296,5 +295,4 @@ __all__ = [
     "Vector",
     "When",
     "bare",
-    "when_path",
 ]

@@ -25,7 +25,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol.time_words import occurrence_words
-from robbdd_tools.syntax.bdd_tree import when_path
+from robbdd_tools.syntax.when_paths import when_path
 
 _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 

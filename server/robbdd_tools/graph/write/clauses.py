@@ -20,6 +20,7 @@ from robbdd_tools.graph.write.behaviour_trees import link_behaviour
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.when_paths import when_path
 
 if TYPE_CHECKING:
     from rdflib import URIRef
@@ -72,7 +73,7 @@ class ClauseWriter:
         nodes: list[Node] = []
         together: Node | None = None
         for number, step in enumerate(when.steps):
-            inner = tree.when_path(path, number)
+            inner = when_path(path, number)
             nodes += self.occurrences(step.events, inner)
             written = self._behaviour(step.behaviour, inner, is_first=step is when)
             for node in written:

@@ -11,6 +11,7 @@ from robbdd_tools.graph.write.clauses import ClauseWriter
 from robbdd_tools.graph.write.scenes import Memberships, Scenes
 from robbdd_tools.graph.write.sink import Frame, Sink, namespace_of
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.when_paths import when_path
 
 if TYPE_CHECKING:
     from rdflib import URIRef
@@ -82,7 +83,7 @@ def _add_variant(frame: Frame, known: Known, variant: tree.Variant, place: _Plac
     sink.add(node, "bdd:of-template", template, frame.at(variant.template))
     if template is not None:
         writer = ClauseWriter(frame, place.namespace, place.owner, f"{template}-scenario")
-        clauses = writer.top(variant.given, "given") + writer.occurrences(variant.events, tree.when_path("", 0))
+        clauses = writer.top(variant.given, "given") + writer.occurrences(variant.events, when_path("", 0))
         clauses += writer.top(variant.then, "then")
         sink.add(node, "bdd:has-clause", sink.make_list(clauses))
     _add_membership(frame, known, variant, node, template)
