@@ -68,7 +68,7 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   // What stays of a declaration that is still being typed, and links to sets and compositions.
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
   phrases(DECLARE, "object", "workspace", "agent"),
-  phrases(WORD, "of"),
+  phrases(WORD, "of", "where", "and", "not"),
 ]);
 
 const predicates = phrases(
@@ -157,6 +157,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
     "repeated combinations from",
     "permutations from",
     "can be",
+    "where",
     "obj set",
     "ws set",
     "agn set",

@@ -141,6 +141,13 @@ BROKEN: dict[str, list[str]] = {
         "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("comp (ns=env) tray", "comp tray"),
         "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("obj set (ns=env)", "obj set"),
     ],
+    "property-condition": [
+        "//- lab.scene\n"
+        + SCENE.replace("bolt, object nut", "bolt { colour: red }, object nut { colour: blue }").replace(
+            "tray_ws }", f"tray_ws {{ correct for: obj set <parts> where {condition} }} }}", 1
+        )
+        for condition in ("color = red", "colour = rad")
+    ],
     "property-value": [
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red  size: 3  colour: blue, red }"),
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red colour: red size: 3 }"),

@@ -40,6 +40,7 @@ from robbdd_tools.checks.not_in_scene import not_in_scene
 from robbdd_tools.checks.not_simulated import not_simulated
 from robbdd_tools.checks.number_range import number_range
 from robbdd_tools.checks.pose import pose
+from robbdd_tools.checks.property_condition import property_condition
 from robbdd_tools.checks.property_value import property_value
 from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.python_source import python_source
@@ -101,6 +102,7 @@ FILE_RULES = (
     no_room,
     no_scenario,
     not_simulated,
+    property_condition,
     published_form,
     python_source,
     several_places,

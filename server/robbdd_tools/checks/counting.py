@@ -6,7 +6,7 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.selections import SelectionRule
-from robbdd_tools.names.elements import elements_of
+from robbdd_tools.checks.chosen_elements import chosen_elements
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -47,10 +47,10 @@ def choices(site: Site, written: Written) -> int | None:
         case tree.SetList():
             return len(written.sets)
         case tree.Link():
-            elements = elements_of(site.follow(written.reference))
+            elements = chosen_elements(site, written.reference, written.where)
             return None if elements is None else len(elements)
         case tree.Selection():
-            elements = elements_of(site.follow(written.source))
+            elements = chosen_elements(site, written.source, written.where)
             return None if elements is None else _selections(written, len(elements))
         case _:
             return 1

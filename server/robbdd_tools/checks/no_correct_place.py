@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.checks.chosen_elements import chosen_elements, written_elements
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.graph.write.imported_graphs import CORRECT_FOR, imported_graph
 from robbdd_tools.names.elements import Site, element_of, elements_of, site_of, story_sites
-from robbdd_tools.names.types import uses_by_variable, variable_key, written_elements
+from robbdd_tools.names.types import uses_by_variable, variable_key
 from robbdd_tools.names.uses import phrase_words
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -102,7 +103,7 @@ def _placed(snapshot: Snapshot, file: FileAnalysis) -> frozenset[Key] | None:
             for link in _stated(declared.declaration):
                 site = Site(snapshot, one, declared)
                 element = element_of(site, link.reference) if link.reference.role == "Object" else None
-                members = (element,) if element is not None else elements_of(site.follow(link.reference))
+                members = (element,) if element is not None else chosen_elements(site, link.reference, link.where)
                 if members is None:
                     return None
                 found.update(member.key for member in members)

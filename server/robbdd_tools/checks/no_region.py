@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import finding
 from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.names.elements import element_of
-from robbdd_tools.names.types import written_elements
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import finding
 from robbdd_tools.checks.no_model import place_of, scene_instances
 from robbdd_tools.checks.scene_use import used_elements
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of, scene_members, story_sites
-from robbdd_tools.names.types import written_elements
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 

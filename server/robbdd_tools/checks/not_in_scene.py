@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.checks.chosen_elements import chosen_elements, written_elements
 from robbdd_tools.checks.finding import finding
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.checks.replacements import SET_WORDS
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.names.elements import Element, elements_of, scene_members
+from robbdd_tools.names.elements import Element, scene_members
 from robbdd_tools.names.imports import import_path
-from robbdd_tools.names.types import written_elements
 from robbdd_tools.names.uses import ELEMENTS
 from robbdd_tools.syntax import tree
 
@@ -95,4 +95,4 @@ def _named_set_members(scenario: Scenario) -> Iterator[Element]:
     for column in scenario.columns:
         for written in column.written:
             if isinstance(written, tree.Link) and written.reference.role in _BROUGHT:
-                yield from elements_of(scenario.site.follow(written.reference)) or ()
+                yield from chosen_elements(scenario.site, written.reference, written.where) or ()

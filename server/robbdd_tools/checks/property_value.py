@@ -34,7 +34,7 @@ def property_value(site: Site) -> Iterator[Diagnostic]:
             if one.name.text in names:
                 message = f"'{one.name.text}' is an element of this set, so it cannot be a property: rename one of them"
                 yield finding(site, one.name, Severity.ERROR, CODE, message)
-    yield from _of_known_facts(site, list(declared_facts(site)))
+    yield from _of_known_facts(site, list(declared_facts(site.file, site.placed)))
 
 
 def _repeated(site: Site, properties: tuple[tree.Property, ...]) -> Iterator[Diagnostic]:
@@ -68,7 +68,7 @@ def _of_known_facts(site: Site, found: list[Fact]) -> Iterator[Diagnostic]:
     for fact in found:
         if fact.written is None or fact.name in reported:
             continue
-        node = fact.written[1]
+        node = fact.written
         if property_name(fact.term) is None:
             reported.add(fact.name)
             message = "this namespace is that of a published vocabulary: declare the set in a namespace of your own"

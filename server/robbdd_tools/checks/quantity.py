@@ -9,10 +9,11 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.quantity_units import QuantityError, read_quantity
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.replacements import with_units
 from robbdd_tools.checks.template_variants import scenarios
-from robbdd_tools.names.types import variable_key, written_elements
+from robbdd_tools.names.types import variable_key
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.chosen_elements import chosen_elements
 from robbdd_tools.checks.finding import change, finding, related_to
 from robbdd_tools.checks.template_variants import scenarios
-from robbdd_tools.names.elements import elements_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def selection_size(site: Site) -> Iterator[Diagnostic]:
 def _checked(site: Site, selection: tree.Selection) -> Iterator[Diagnostic]:
     count = selection.count.value
     source = selection.source
-    elements = elements_of(site.follow(source))
+    elements = chosen_elements(site, source, selection.where)
     related = (related_to(site, source, "the set"),)
     if not isinstance(count, int) or count < 1:
         message = f"'select {count}' selects nothing: write a whole number of at least 1"

@@ -15,9 +15,10 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.object_settings import agent_has, object_has
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS, Setting, SettingError, setting_of
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import article, change, finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.names.types import Written, variable_key, written_elements
+from robbdd_tools.names.types import Written, variable_key
 from robbdd_tools.names.uses import Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

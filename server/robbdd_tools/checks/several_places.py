@@ -11,11 +11,12 @@ from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Element, Site, element_of, site_of, story_sites
 from robbdd_tools.names.index import language_of
-from robbdd_tools.names.types import Written, variable_key, written_elements
+from robbdd_tools.names.types import Written, variable_key
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

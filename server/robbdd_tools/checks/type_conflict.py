@@ -7,11 +7,12 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import article, finding, related_to
 from robbdd_tools.checks.replacements import other_values, other_variables, variables_with_kinds, with_units
 from robbdd_tools.checks.template_variants import Column, Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of
-from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key, written_elements
+from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key
 from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of, dimension_of_phrase
 from robbdd_tools.syntax import tree
 

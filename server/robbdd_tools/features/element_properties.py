@@ -13,6 +13,7 @@ from robbdd_tools.graph.property_facts import Fact, declared_facts, facts
 
 if TYPE_CHECKING:
     from robbdd_tools.features.cursor import Cursor
+    from robbdd_tools.names.analysis import PlacedDeclaration
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Site
     from robbdd_tools.names.project import Snapshot
@@ -21,8 +22,10 @@ MAX_VALUES = 12
 """Maximum number of values in a description."""
 _NAME = r"[^\W\d][\w\-]*"
 _STATED = re.compile(rf"({_NAME})\s*:")
-_VALUE = re.compile(rf"({_NAME})\s*:(?:[^{{}}:]*,)?\s*\Z")
+_VALUE = re.compile(rf"({_NAME})\s*(?::(?:[^{{}}:]*,)?|!?=)\s*\Z")
 _WORD = re.compile(_NAME)
+CONDITION = re.compile(r"\b(?:where|and)(?:\s+not)?\s*\Z")
+"""The end of a text after which a condition begins. In braces, a property cannot follow these words."""
 _WRITTEN = re.compile(
     rf"\"(?:\\.|[^\"\\\n])*\"|[-+]?[\d.][\w.+\-]*(?:\s*(?:{'|'.join(UNITS)})(?![\w\-/]))?|{_NAME}(?!\s*:)"
 )
@@ -36,7 +39,8 @@ def name_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[tuple
 
     Properties that the same element already has are left out.
     """
-    stated = set(_STATED.findall(cursor.before[cursor.before.rfind("{") + 1 :]))
+    before = "" if CONDITION.search(cursor.before) else cursor.before
+    stated = set(_STATED.findall(before[before.rfind("{") + 1 :]))
     for name, values in sorted(_known_values(snapshot, uri, cursor).items()):
         if name not in stated:
             yield name, _in_words(values)
@@ -55,7 +59,9 @@ def _known_values(snapshot: Snapshot, uri: str, cursor: Cursor) -> Mapping[str, 
     Those of the declaration at the cursor are read from its text, since it may be broken.
     """
     found: dict[str, dict[str, None]] = {}
-    for match in _LISTED.finditer("" if cursor.placed is None else cursor.placed.declaration.text):
+    for match in _LISTED.finditer(
+        cursor.placed.declaration.text if cursor.placed is not None and _states(cursor.placed) else ""
+    ):
         if match[1] not in _LABELS:
             found.setdefault(match[1], {}).update(dict.fromkeys(_WRITTEN.findall(match[2] or "")))
     for fact in facts(snapshot, uri):
@@ -63,6 +69,10 @@ def _known_values(snapshot: Snapshot, uri: str, cursor: Cursor) -> Mapping[str, 
         if fact.value.kind != ELEMENT:
             known[written(fact.value)] = None
     return {name: list(values) for name, values in found.items()}
+
+
+def _states(placed: PlacedDeclaration) -> bool:
+    return placed.declaration.text.lstrip().startswith(("obj", "ws", "agn", "similar"))
 
 
 def written(value: PropertyValue) -> str:
@@ -89,7 +99,7 @@ def describe_properties(site: Site, definition: Definition) -> Iterator[str]:
     """Yield a list, in Markdown, of the properties that a scene states about an element."""
     lines = [
         f"- {code(fact.name)}: {literal(fact.value.text)}"
-        for fact in declared_facts(site)
+        for fact in declared_facts(site.file, site.placed)
         if fact.element == definition.iri
     ]
     if lines:

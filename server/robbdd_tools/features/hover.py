@@ -81,7 +81,9 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
                 return Hover(word_meaning(word_of(node)), span)
             if isinstance(node, tree.During | tree.Before | tree.After):
                 return Hover(time_meaning(node), span)
-            if isinstance(node, tree.Property) and node.name.span.shifted(placed.offset).contains(offset):
+            if isinstance(node, tree.Property | tree.PropertyCondition) and node.name.span.shifted(
+                placed.offset
+            ).contains(offset):
                 found = describe_property(snapshot, uri, node.name.text)
                 return None if found is None else Hover(found, node.name.span.shifted(placed.offset))
             if isinstance(node, tree.Emission):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
-from robbdd_tools.features.element_properties import name_choices, value_choices
+from robbdd_tools.features.element_properties import CONDITION, name_choices, value_choices
 from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
 from robbdd_tools.features.unimported import Elsewhere, beside, loaded
@@ -139,8 +139,11 @@ class Names:
     def properties(self) -> Iterator[Completion]:
         """Yield the properties that elements of the model have."""
         uri = self.file.document.uri
+        ending = "" if CONDITION.search(self.cursor.before) else ": "
         for name, values in name_choices(self.snapshot, uri, self.cursor):
-            yield Completion(name, "property", values, f"{name}: ", self.cursor.span, self.whole, origin=(uri, name))
+            yield Completion(
+                name, "property", values, f"{name}{ending}", self.cursor.span, self.whole, origin=(uri, name)
+            )
 
     def property_values(self) -> Iterator[Completion]:
         """Yield the values that the property at the cursor has elsewhere in the model."""

@@ -274,6 +274,10 @@ def _names(node: tree.Node) -> Iterator[tuple[tree.Node, str]]:
             yield from ((value, ARGUMENT) for _, value in node.arguments if isinstance(value, tree.Name))
         case tree.TextArgument():
             yield node.name, ARGUMENT
+        case tree.PropertyCondition():
+            yield node.name, PROPERTY
+            if isinstance(node.value, tree.Text | tree.Truth):
+                yield node.value, STRING if isinstance(node.value, tree.Text) else KEYWORD
         case tree.Property():
             yield node.name, PROPERTY
             yield from ((value, STRING) for value in node.values if isinstance(value, tree.Text))

@@ -18,6 +18,7 @@ from robbdd_tools.syntax.scene_tree import (
     Quantity,
     Ref,
     Text,
+    Where,
 )
 from robbdd_tools.syntax.time_tree import During, TimeConstraint
 
@@ -123,10 +124,11 @@ class Disjunction(Node):
 
 @dataclass(frozen=True, slots=True)
 class Exists(Node):
-    """``( var y exists in <set> ) such that { e }``."""
+    """``( var y exists in <set> [where …] ) such that { e }``."""
 
     variable: Name
     in_set: Ref
+    where: Where | None
     body: Expression
 
 
@@ -201,10 +203,11 @@ class When(Node):
 
 @dataclass(frozen=True, slots=True)
 class ForAll(Node):
-    """``for all ( var x in <set> ) { body }``."""
+    """``for all ( var x in <set> [where …] ) { body }``."""
 
     variable: Name
     in_set: Ref
+    where: Where | None
     body: Body
 
 
@@ -274,12 +277,13 @@ SetExpression = Link | ValueList
 
 @dataclass(frozen=True, slots=True)
 class Selection(Node):
-    """``select N [repeated] combinations|permutations from <set>``."""
+    """``select N [repeated] combinations|permutations from <set> [where …]``."""
 
     count: Number
     repeated: bool
     kind: str
     source: Ref
+    where: Where | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,15 +105,39 @@ class CatalogEntry(Node):
     name: Text
 
 
-@dataclass(frozen=True, slots=True)
-class Link(Node):
-    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind."""
-
-    reference: Ref
-
-
 PropertyValue = Ref | Quantity | Number | Text | Truth
 """A value of a property. A word without quotes is a ``Text``."""
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyCondition(Node):
+    """``colour = red``, ``fragile`` or ``not fragile``.
+
+    ``comparison`` is ``=``, ``!=``, ``<``, ``<=``, ``>``, ``>=`` or ``not``. Without a sign, ``value`` is ``None``, and
+    the property is compared with true.
+    """
+
+    name: Name
+    comparison: str
+    value: PropertyValue | None
+
+
+@dataclass(frozen=True, slots=True)
+class Where(Node):
+    """``where … and …``: selects the elements of a set whose properties satisfy all conditions."""
+
+    conditions: tuple[PropertyCondition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Link(Node):
+    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind.
+
+    ``where`` selects elements of a set.
+    """
+
+    reference: Ref
+    where: Where | None
 
 
 @dataclass(frozen=True, slots=True)

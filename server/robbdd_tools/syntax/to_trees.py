@@ -167,12 +167,19 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
             "WorkspaceSetLink",
             "AgentSetLink",
             "ConstantSetLink",
+            "FittingSet",
             "TargetVariable",
             "TargetObject",
             "TargetWorkspace",
             "TargetAgent",
         ),
-        _given(tree.Link),
+        lambda raw, span, text: tree.Link(
+            span, convert(raw.reference, text), _value(getattr(raw, "where", None), text)
+        ),
+    ),
+    "PropertyComparison": _given(tree.PropertyCondition),
+    "PropertyFlag": lambda raw, span, text: tree.PropertyCondition(
+        span, convert(raw.name, text), "not" if raw.negated else "=", None
     ),
     "SetsAssignment": lambda raw, span, text: tree.Assignment(
         span, convert(raw.variable, text), convert(raw.sets, text)

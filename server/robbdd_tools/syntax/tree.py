@@ -109,6 +109,7 @@ from robbdd_tools.syntax.scene_tree import (
     Node,
     Number,
     Property,
+    PropertyCondition,
     PropertyValue,
     PythonAttribute,
     Quantity,
@@ -117,6 +118,7 @@ from robbdd_tools.syntax.scene_tree import (
     SimilarSet,
     Text,
     Truth,
+    Where,
 )
 from robbdd_tools.syntax.scenex_tree import (
     Camera,
@@ -243,6 +245,7 @@ __all__ = [
     "Pose",
     "Product",
     "Property",
+    "PropertyCondition",
     "PropertyValue",
     "Provider",
     "PythonAttribute",
@@ -294,5 +297,6 @@ __all__ = [
     "Variant",
     "Vector",
     "When",
+    "Where",
     "bare",
 ]

@@ -23,6 +23,7 @@ from robbdd_tools.graph.acceptance_model import (
 from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
+from robbdd_tools.graph.text.property_text import set_reference
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol.time_words import occurrence_words
 from robbdd_tools.syntax.when_paths import when_path
@@ -159,7 +160,7 @@ class ClauseText:
         return self.variables.get(variable) or self.names.reference(variable)
 
     def _set(self, node: str) -> str:
-        return self.variables.get(node) or self.names.reference(node)
+        return self.variables.get(node) or set_reference(self.names, node)
 
     def _bind(self, variable: Iri) -> str:
         """Declare the variable of a quantifier, so that clauses inside the quantifier can refer to it."""

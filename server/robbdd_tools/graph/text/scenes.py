@@ -8,17 +8,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.records import Incomplete, elements_of, items_of
-from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, QUANTITY, expand
-from robbdd_tools.graph.text.names import NAME, Names, braces, indented, quoted
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
+from robbdd_tools.graph.text.names import NAME, Names, braces, indented
+from robbdd_tools.graph.text.property_text import SET_BY_PROPERTY, base_of, set_reference, value_text
 
 if TYPE_CHECKING:
-    from rdflib.term import Node
-
     from robbdd_tools.graph.acceptance_model import Iri
 
 WORDS = {"object": "obj", "workspace": "ws", "agent": "agn"}
-TRUTHS = ("true", "false")
-_NUMERIC = (expand("xsd:integer"), expand("xsd:double"), QUANTITY)
 _MEMBERSHIP = re.compile(r"-scene-has-(?:obj|ws|agn)(?:-\d+)?\Z")
 
 
@@ -54,8 +51,9 @@ class SceneText:
 
     def link(self, node: str) -> str:
         """Return a reference to a set in a variation or a scene, for example ``obj set <…>`` or ``set <…>``."""
-        kind = self.kinds.get(node)
-        return f"{WORDS[kind]} set {self.names.reference(node)}" if kind else f"set {self.names.reference(node)}"
+        kind = self.kinds.get(base_of(self.names, node))
+        reference = set_reference(self.names, node)
+        return f"{WORDS[kind]} set {reference}" if kind else f"set {reference}"
 
     def constant_set(self, node: Iri) -> str:
         """Return the declaration of a set of values."""
@@ -76,7 +74,11 @@ class SceneText:
         in_scenes = {
             str(item) for node in records.subjects("rbw:entries") for item in items_of(records, node, "rbw:entries")
         }
-        sets = {node: tuple(map(str, elements_of(records, node))) for node in records.instances("bdd:ConstantSet")}
+        sets = {
+            node: tuple(map(str, elements_of(records, node)))
+            for node in records.instances("bdd:ConstantSet")
+            if not records.is_a(node, SET_BY_PROPERTY)
+        }
         taken: set[str] = set()
         for node in sorted(sets, key=lambda entry: (entry not in in_scenes, -len(sets[entry]), entry)):
             members = sets[node]
@@ -133,10 +135,13 @@ class SceneText:
     def _details(self, set_: str, member: str, kind: str) -> str:
         """Return what the graph states about an element, in braces; empty if it states nothing."""
         stated = map(str, self.names.records.all(member, "rbw:correct-for")) if kind == "workspace" else ()
-        fitting = sorted(node for node in stated if self.kinds.get(node, self._elements.get(node)) == "object")
+        fitting = sorted(node for node in stated if self._kind(node) == "object")
         correct = [f"correct for: {', '.join(map(self._entry, fitting))}"] if fitting else []
         found = (*correct, *self._properties(set_, member))
         return f" {{ {'  '.join(found)} }}" if found else ""
+
+    def _kind(self, node: str) -> str | None:
+        return self.kinds.get(base_of(self.names, node), self._elements.get(node))
 
     def _properties(self, set_: str, member: str) -> list[str]:
         """Return the properties of an element that are in the namespace of its set."""
@@ -145,24 +150,11 @@ class SceneText:
         for term in records.properties(member):
             name = term.removeprefix(namespace)
             if term != name and NAME.fullmatch(name):
-                values = [text for value in records.all(member, term) if (text := self._value(value)) is not None]
+                values = [
+                    text for value in records.all(member, term) if (text := value_text(self.names, value)) is not None
+                ]
                 found += [f"{name}: {', '.join(values)}"] if values else []
         return found
-
-    def _value(self, value: Node) -> str | None:
-        """Return a value of a property; ``None`` if the language cannot write it."""
-        kind = str(getattr(value, "datatype", None) or "")
-        if self.names.records.iris([value]):
-            return self.names.reference(str(value)) if str(value) in self._elements else None
-        if getattr(value, "language", None):
-            return None
-        text = str(value)
-        if kind == expand("xsd:boolean"):
-            return text if text in TRUTHS else None
-        if kind in ("", expand("xsd:string")):
-            return text if NAME.fullmatch(text) and text not in TRUTHS else quoted(text)
-        written = self.names.value(value) if kind in _NUMERIC else None
-        return None if written is None or written.startswith('"') else written
 
     def _composition(self, node: Iri) -> Iterator[str]:
         records, names = self.names.records, self.names

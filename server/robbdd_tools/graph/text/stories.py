@@ -12,6 +12,7 @@ from robbdd_tools.graph.rdf.vocabulary import SELECTIONS
 from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.clauses import ClauseText
 from robbdd_tools.graph.text.names import Names, braces, indented, quoted
+from robbdd_tools.graph.text.property_text import base_of, set_reference
 from robbdd_tools.graph.text.scenes import SceneText
 
 if TYPE_CHECKING:
@@ -108,7 +109,8 @@ class StoryText:
         return self.scenes.link(str(node)) if self._is_set(node) else self.names.value(node)
 
     def _is_set(self, node: Node) -> bool:
-        return str(node) in self.scenes.kinds or node in self.scenes.constant_sets
+        base = base_of(self.names, str(node))
+        return base in self.scenes.kinds or base in self.scenes.constant_sets
 
     def _assignment(self, variable: str, is_set: bool, entry: Node, made: str) -> str:
         records = self.names.records
@@ -129,7 +131,7 @@ class StoryText:
         if iri != node:
             names.renamed[node] = iri
         repeated = "repeated " if records.text(node, "bdd:repetition-allowed") == "true" else ""
-        source = names.reference(records.one(node, "bdd:from"))
+        source = set_reference(names, records.one(node, "bdd:from"))
         return f"select {records.text(node, 'bdd:length')} {repeated}{kind} from {source}"
 
 

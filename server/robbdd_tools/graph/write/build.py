@@ -26,6 +26,7 @@ from robbdd_tools.graph.write.identities import SHARED, Identities, identities
 from robbdd_tools.graph.write.imported_faults import imported_faults
 from robbdd_tools.graph.write.imported_graphs import NOTHING, ImportedGraph, imported_graph
 from robbdd_tools.graph.write.instances import add_instances
+from robbdd_tools.graph.write.property_sets import PropertySets
 from robbdd_tools.graph.write.scenes import (
     Memberships,
     Scenes,
@@ -81,7 +82,7 @@ def build_declarations(
     sink = Sink()
     for node, declarers in known.shared.items():
         sink.sources.mark([(node,)], declarers[0].location)
-    _add_foundations(sink, reached)
+    _add_foundations(sink, reached, imported)
     prefixes = _add_prefixes(sink, reached)
     names = known.names
     if imported.documents:
@@ -127,16 +128,16 @@ def _start(definition: Definition) -> int:
     return definition.span.start
 
 
-def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
+def _add_foundations(sink: Sink, reached: Sequence[Reached], imported: ImportedGraph) -> None:
     """Write all declarations: first independent ones, then compositions, which may be nested, and then stories."""
-    scenes = Scenes()
     tasks: dict[URIRef, URIRef] = {}
     wholes = [tuple(parts) for _, parts in groupby(reached, key=_whole)]
     placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry, *_ in wholes]
+    scenes = Scenes(PropertySets(placed, imported))
     for root, frame in placed:
         frame.begin()
         if isinstance(root, tree.Template):
-            _add_template(frame, root, tasks)
+            _add_template(frame, scenes.selected, root, tasks)
         elif root is not None:
             _add_simple(frame, scenes, root)
     for root, frame in placed:
@@ -194,7 +195,7 @@ def _add_constant_set(frame: Frame, declared: tree.ConstantSet) -> None:
     add_set(frame, node, declared.name, elements)
 
 
-def _add_template(frame: Frame, template: tree.Template, tasks: dict[URIRef, URIRef]) -> None:
+def _add_template(frame: Frame, selected: PropertySets, template: tree.Template, tasks: dict[URIRef, URIRef]) -> None:
     node = frame.claimed(template.name.text, template.name)
     if node is None:
         return
@@ -214,7 +215,7 @@ def _add_template(frame: Frame, template: tree.Template, tasks: dict[URIRef, URI
         sink.add(scenario, "task:of-task", task, frame.at(template.task))
         tasks[node] = task
     _add_variables(frame, node, template)
-    writer = ClauseWriter(frame, namespace_of(node, template.name.text), template.name.text, scenario)
+    writer = ClauseWriter(frame, selected, namespace_of(node, template.name.text), template.name.text, scenario)
     sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))
 
 

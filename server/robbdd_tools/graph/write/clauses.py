@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
     from robbdd_tools.catalog.api import Slot
+    from robbdd_tools.graph.write.property_sets import PropertySets
 
 MAX_NESTED = 100
 """Maximum nesting of parentheses; deeper ones are left out to protect the stack."""
@@ -42,6 +43,7 @@ class ClauseWriter:
     """
 
     frame: Frame
+    sets: PropertySets
     namespace: str
     owner: str
     scenario: str
@@ -177,7 +179,7 @@ class ClauseWriter:
         node = self._generated("exists", path)
         if node is not None:
             self._start(node, ["bdd:ThereExists"], role, self.frame.at(exists.variable))
-            self._quantified(node, exists.variable, exists.in_set)
+            self._quantified(node, exists)
             body = tree.bare(exists.body)
             operands = body.operands if isinstance(body, tree.Conjunction) else (body,)
             self._sink.add(node, "bdd:has-clause", self._sink.make_list(self._each(operands, role, path)))
@@ -188,16 +190,19 @@ class ClauseWriter:
         if node is None or path.count(".") > MAX_NESTED:
             return []
         self._start(node, ["bdd:ForAll"], "when", self.frame.at(for_all.variable))
-        self._quantified(node, for_all.variable, for_all.in_set)
+        self._quantified(node, for_all)
         self._sink.add(node, "bdd:has-clause", self._sink.make_list(self.body(for_all.body, path)))
         return [node]
 
-    def _quantified(self, node: URIRef, name: tree.Name, in_set: tree.Ref) -> None:
+    def _quantified(self, node: URIRef, quantifier: tree.Exists | tree.ForAll) -> None:
+        name, in_set = quantifier.variable, quantifier.in_set
         variable = self.frame.node(f"{self.owner}.{name.text}")
         if variable is not None:
             self._sink.add_types(variable, ["bdd:ScenarioVariable"], self.frame.at(name))
         self._sink.add(node, "bdd:ref-variable", variable, self.frame.at(name))
-        self._sink.add(node, "bdd:in-set", self.frame.target(in_set), self.frame.at(in_set))
+        self._sink.add(
+            node, "bdd:in-set", self.sets.target(self.frame, in_set, quantifier.where), self.frame.at(in_set)
+        )
 
     def _behaviour(self, use: tree.BehaviourUse, path: str, *, is_first: bool) -> list[Node]:
         behaviour = self.frame.node(f"{self.owner}.{use.name.text}")

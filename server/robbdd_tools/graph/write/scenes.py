@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from rdflib import URIRef
     from rdflib.term import Node
 
+    from robbdd_tools.graph.write.property_sets import PropertySets
+
 SET_TYPES = ("bdd:Set", "bdd:ConstantSet")
 _LINKED_SETS = {"ObjectSet": "object", "WorkspaceSet": "workspace", "AgentSet": "agent"}
 Members = Mapping[str, tuple["URIRef", ...]]
@@ -33,6 +35,7 @@ class Scenes:
     The members of variants are computed from it.
     """
 
+    selected: PropertySets
     sets: dict[URIRef, tuple[str, tuple[URIRef, ...]]] = field(
         default_factory=dict["URIRef", tuple[str, tuple["URIRef", ...]]]
     )
@@ -62,8 +65,12 @@ class Scenes:
 
     def named_set_members(self, frame: Frame, variation: tree.Table | tree.Product) -> Members:
         """Return the members of the element sets that a variation names, for example by ``obj set <…>``."""
-        links = (frame.target(link.reference) for link in _links(variation))
-        found = [self.sets[link] for link in links if link is not None and link in self.sets]
+        found: list[tuple[str, tuple[URIRef, ...]]] = []
+        for link in _links(variation):
+            node = frame.target(link.reference)
+            if node is not None and node in self.sets:
+                kind, members = self.sets[node]
+                found.append((kind, members if link.where is None else self.selected.members(frame, link) or ()))
         return {
             kind: _unique(member for its, members in found if its == kind for member in members)
             for kind in ELEMENT_TYPES
@@ -118,17 +125,17 @@ def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> 
             frame.sink.add_types(element, [ELEMENT_TYPES[declared.kind]], frame.at(member.name))
             frame.sink.mark(node, "bdd:elements", element, frame.at(member.name))
             members.append(element)
-            _add_fitting_objects(frame, element, member)
+            _add_fitting_objects(frame, scenes.selected, element, member)
             namespace = namespace_of(element, member.name.text)
             _add_properties(frame, namespace, element, member.properties)
     scenes.sets[node] = (declared.kind, tuple(members))
     add_set(frame, node, declared.name, members)
 
 
-def _add_fitting_objects(frame: Frame, workspace: URIRef, member: tree.Member) -> None:
+def _add_fitting_objects(frame: Frame, selected: PropertySets, workspace: URIRef, member: tree.Member) -> None:
     """Add the objects, or sets of objects, for which a workspace is the correct place."""
     for link in member.correct_for:
-        target = frame.target(link.reference)
+        target = selected.target(frame, link.reference, link.where)
         if target is not None:
             frame.sink.add(workspace, "rbw:correct-for", target, frame.at(link.reference))
 

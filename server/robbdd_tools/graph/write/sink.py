@@ -143,26 +143,27 @@ class Frame:
 
     def __init__(self, sink: Sink, file: FileAnalysis, placed: PlacedDeclaration) -> None:
         self.sink = sink
+        self.file = file
+        self.placed = placed
         self._uri = file.document.uri
         self._definitions = file.definitions
-        self._placed = placed
 
     @property
     def tree(self) -> ChunkTree | None:
         """The syntax tree of the declaration."""
-        return self._placed.declaration.tree
+        return self.placed.declaration.tree
 
     def begin(self) -> None:
         """Make this declaration the author of the triples added from now on."""
-        self.sink.begin((self._uri, self._placed.offset))
+        self.sink.begin((self._uri, self.placed.offset))
 
     def at(self, node: TreeNode) -> Location:
         """Return the absolute place of a node in the syntax tree of the declaration."""
-        return Location(self._uri, node.span.shifted(self._placed.offset))
+        return Location(self._uri, node.span.shifted(self.placed.offset))
 
     def target(self, ref: Ref) -> URIRef | None:
         """Return the graph node to which a reference leads, or ``None`` if the reference is unresolved."""
-        definition = self._placed.targets.get(ref)
+        definition = self.placed.targets.get(ref)
         return None if definition is None else self.sink.iri(definition.iri)
 
     def node(self, path: str) -> URIRef | None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
     from robbdd_tools.graph.write.declarations import Reached
+    from robbdd_tools.graph.write.property_sets import PropertySets
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +83,7 @@ def _add_variant(frame: Frame, known: Known, variant: tree.Variant, place: _Plac
     sink.add_types(node, ["bdd:ScenarioVariant"], frame.at(variant.name))
     sink.add(node, "bdd:of-template", template, frame.at(variant.template))
     if template is not None:
-        writer = ClauseWriter(frame, place.namespace, place.owner, f"{template}-scenario")
+        writer = ClauseWriter(frame, known.scenes.selected, place.namespace, place.owner, f"{template}-scenario")
         clauses = writer.top(variant.given, "given") + writer.occurrences(variant.events, when_path("", 0))
         clauses += writer.top(variant.then, "then")
         sink.add(node, "bdd:has-clause", sink.make_list(clauses))
@@ -133,7 +134,7 @@ def _add_variation(
     sink.add(place.node, "bdd:has-variation", node, frame.at(variation))
     if template is not None:
         sink.add(node, "task:of-task", known.tasks.get(template))
-    writer = _VariationWriter(frame, place, node)
+    writer = _VariationWriter(frame, known.scenes.selected, place, node)
     if isinstance(variation, tree.Table):
         writer.table(variation)
     else:
@@ -143,6 +144,7 @@ def _add_variation(
 @dataclass(frozen=True, slots=True)
 class _VariationWriter:
     frame: Frame
+    sets: PropertySets
     place: _Place
     node: URIRef
 
@@ -187,7 +189,7 @@ class _VariationWriter:
     def _choice(self, piece: tree.Value | tree.SetExpression) -> Node | None:
         match piece:
             case tree.Link():
-                return self.frame.target(piece.reference)
+                return self.sets.target(self.frame, piece.reference, piece.where)
             case tree.ValueList():
                 return self.frame.sink.make_list(self._value(value) for value in piece.values)
             case _:
@@ -224,7 +226,7 @@ class _VariationWriter:
         count = selection.count.value
         datatype = "xsd:positiveInteger" if isinstance(count, int) and count > 0 else None
         sink.add_types(node, [SELECTIONS[selection.kind]], self.frame.at(selection))
-        source = self.frame.target(selection.source)
+        source = self.sets.target(self.frame, selection.source, selection.where)
         sink.add(node, "bdd:from", source, self.frame.at(selection.source))
         sink.add(node, "bdd:length", sink.literal(count, datatype), self.frame.at(selection.count))
         # The published vocabulary has this property only on combinations.
