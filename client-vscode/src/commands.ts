@@ -104,7 +104,7 @@ async function withModel(target: unknown, task: (uri: string) => unknown, langua
   }
 }
 
-/** The file of a menu, or that which the argument of a lens names. */
+/** The file of a menu, or the one in the argument of a lens. */
 function modelOf(target: unknown): unknown {
   return hasUri(target) ? vscode.Uri.parse(target.uri) : target;
 }

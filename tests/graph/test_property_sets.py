@@ -12,6 +12,7 @@ from robbdd_tools.base.property_conditions import PropertyCondition
 from robbdd_tools.base.property_values import NUMBER, QUANTITY, TEXT, TRUTH, PropertyValue
 from robbdd_tools.features.completion import complete
 from robbdd_tools.gherkin.variations import count
+from robbdd_tools.graph.acceptance_model import Product
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 
@@ -34,9 +35,11 @@ def selected(text: str) -> list[str]:
     """The values of the first variable."""
     case = fixture(text)
     variant = read_model(build_graph(case.snapshot, case.uri).graph).stories[0].variants[0]
-    choices = variant.variation.choices[0]  # pyright: ignore[reportAttributeAccessIssue, reportUnknownVariableType, reportUnknownMemberType]
-    assert count(variant.variation) == len(choices)  # pyright: ignore[reportUnknownArgumentType]
-    return [str(one).removeprefix(ENV) for one in choices]  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    assert isinstance(variant.variation, Product)
+    choices = variant.variation.choices[0]
+    assert isinstance(choices, tuple)
+    assert count(variant.variation) == len(choices)
+    return [str(one).removeprefix(ENV) for one in choices]
 
 
 @pytest.mark.parametrize(

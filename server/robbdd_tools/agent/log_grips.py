@@ -1,4 +1,4 @@
-"""What agents hold, by the reports of a log or by declared signals. What is not observed is NaN."""
+"""The grips of agents in a log: its reports, or declared signals. Unobserved grips are NaN."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.judging.grip_signals import EFFORT, GripSignal, NoGripSignal, read_grip_signal
 from robbdd_tools.judging.log_names import elements_of, local_name
 from robbdd_tools.logs.joint_tracks import JointTrack, positions_at
+from robbdd_tools.protocol.grip_signals import EFFORT, GripSignal, NoGripSignal, read_grip_signal
 from robbdd_tools.world.extent import outline_of
 
 if TYPE_CHECKING:

@@ -75,7 +75,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _grip(text: str) -> str:
-    from robbdd_tools.judging.grip_signals import read_grip_signal
+    from robbdd_tools.protocol.grip_signals import read_grip_signal
 
     try:
         read_grip_signal(text)

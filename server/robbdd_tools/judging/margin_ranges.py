@@ -74,7 +74,9 @@ def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | 
         emitting = emitter(spec.node, START)
     else:
         number = stated.iterations[0] if stated.iterations else 0
-        first = next((call for call, known in behaviour_calls(spec) if iteration_of(known) in (0, number)), None)
+        calls = enumerate(behaviour_calls(spec), start=1)
+        iterations = ((call, iteration_of(known) or (1 if call.part else index)) for index, (call, known) in calls)
+        first = next((call for call, iteration in iterations if iteration == (number or 1)), None)
         if first is None:
             return None
         if first.part:

@@ -82,10 +82,8 @@ class RobbddServer(LanguageServer):
         """Whether the client has the command ``robbdd.showReplay``, also in Markdown links."""
         self.shows_history = False
         """Whether the client has the command ``robbdd.showHistory``, also in Markdown links."""
-        self.debugs_scenarios = False
-        """Whether the client has the command ``robbdd.debugScenario``."""
-        self.runs_studies = False
-        """Whether the client has the commands of ``lsp/study_lenses``."""
+        self.debugs_scenarios = self.runs_studies = False
+        """Whether the client has the command ``robbdd.debugScenario``, and the commands of ``lsp/study_lenses``."""
         self._connection: Connection | None = None
         self._shapes = ShapeFindings()
         self._analysis = AnalysisThread()

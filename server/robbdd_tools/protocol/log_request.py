@@ -24,7 +24,7 @@ class LogRequest:
     - ``joint_topics``: maps an agent to the topic of the states of its joints.
     - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
     - ``columns``: maps the name of a column of a table to its title in the file.
-    - ``grips``: signals that say when an agent holds something, as ``judging/grip_signals`` reads them.
+    - ``grips``: signals that say when an agent holds something, as ``protocol/grip_signals`` reads them.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 

@@ -6,7 +6,7 @@ from math import inf, pi
 
 import pytest
 
-from robbdd_tools.judging.grip_signals import GripSignal, NoGripSignal, read_grip_signal
+from robbdd_tools.protocol.grip_signals import GripSignal, NoGripSignal, read_grip_signal
 
 
 @pytest.mark.parametrize(
