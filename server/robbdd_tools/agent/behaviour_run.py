@@ -215,6 +215,9 @@ class BehaviourRun:
             return ""
         self.remark = str(error)
         self.failed = True
+        if self._active is not None:
+            # The time limit may end the execution while the arm withdraws.
+            self.failures[self._active] = str(error)
         if not self._executors.is_users:
             yield from self._executors.controller(call).withdraw()
         return str(error)

@@ -75,7 +75,7 @@ class ClauseText:
             lines[0] = f"{'then' if part.behaviour.together is None else 'meanwhile'} {lines[0]}"
         return lines
 
-    def events(self, events: Iterable[EventClause], path: str = "") -> list[str]:
+    def events(self, events: Iterable[EventClause], path: str) -> list[str]:
         """Return the text ``event <e> occurs`` for each event in a part of a When, which has the path ``path``."""
         lines: list[str] = []
         for index, clause in enumerate(events):

@@ -14,6 +14,7 @@ from robbdd_tools.graph.text.clauses import ClauseText
 from robbdd_tools.graph.text.names import Names, braces, indented, quoted
 from robbdd_tools.graph.text.property_text import base_of, set_reference
 from robbdd_tools.graph.text.scenes import SceneText
+from robbdd_tools.syntax.when_paths import when_path
 
 if TYPE_CHECKING:
     from rdflib.term import Node
@@ -61,7 +62,7 @@ class StoryText:
         owner = f"{story}.{name}"
         writer = ClauseText(names, owner, namespace, dict(self.variables[template]))
         clauses = [self.reader.clause(clause) for clause in items_of(records, node, "bdd:has-clause")]
-        events = writer.events([clause for clause in clauses if isinstance(clause, EventClause)])
+        events = writer.events([clause for clause in clauses if isinstance(clause, EventClause)], when_path("", 0))
         parts = [
             f"template: {names.reference(template)}",
             f"scene: {self.scenes.scenes[node]}",
