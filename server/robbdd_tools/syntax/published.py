@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import count
+from itertools import chain, count
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.event_names import inner_event
@@ -108,7 +108,7 @@ class _Namer:
         if use.name.text:
             return use
         base = f"{self.owner}-{use.action.word}"
-        free = next(name for name in (base, *(f"{base}-{number}" for number in count(2))) if name not in taken)
+        free = next(name for name in chain([base], (f"{base}-{number}" for number in count(2))) if name not in taken)
         taken.add(free)
         return replace(use, name=replace(use.name, text=free))
 
