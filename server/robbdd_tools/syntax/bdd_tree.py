@@ -1,7 +1,4 @@
-"""Syntax trees of acceptance criteria: one frozen class per grammar rule, fields named as in the grammar.
-
-Spans count from the start of the chunk, so a tree stays valid when its text moves.
-"""
+"""Syntax trees of acceptance criteria, one class per grammar rule. Spans count from the start of the chunk."""
 
 from __future__ import annotations
 
