@@ -29,3 +29,9 @@ const wheels = built.status === 0 ? await readdir(out) : [];
 if (wheels.length !== 1 || !wheels[0].startsWith(`robbdd_tools-${version}-`)) {
   throw new Error(`no wheel of version ${version} was built by ${python}: ${wheels.join(", ") || "see above"}`);
 }
+const { status } = spawnSync(python, ["-I", join(import.meta.dirname, "store.py"), join(out, wheels[0])], {
+  stdio: ["ignore", "ignore", "inherit"],
+});
+if (status !== 0) {
+  throw new Error(`${wheels[0]} was not stored by ${python}`);
+}
