@@ -181,6 +181,9 @@ def _project() -> Iterator[tuple[str, str]]:
             text = following + model(60).replace("goal", f"goal-{number}-")
             (folder / f"file{number}.bdd").write_text(text, encoding="utf-8")
         project, what = Project(), f"{PROJECT_FILES} files"
+        closed, root = project.snapshot(), [path_to_uri(folder)]
+        first = milliseconds(lambda: workspace_symbols(closed, root, "goal-777-"))
+        yield f"first search of workspace symbols, project of {what}, all closed", f"{first:.0f} ms"
         opened = milliseconds(lambda: [project.load(uri) for uri in uris])
         opened += milliseconds(lambda: list(map(project.snapshot().file, uris)))
         yield f"cold open, project of {what}", f"{opened:.0f} ms"

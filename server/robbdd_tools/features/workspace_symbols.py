@@ -1,4 +1,8 @@
-"""Search the names declared in all model files of the workspace, open or not."""
+"""Search the names declared in all model files of the workspace, open or not.
+
+Of an unopened file, only the words of its names are found (``syntax/sound_names``). A declaration is parsed if its
+words fit the query, or if it may have a syntax error: the parser then repairs it, and may find further names.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,27 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.checkpoint import checkpoint
-from robbdd_tools.base.files import FileState, file_state
-from robbdd_tools.features.unimported import file_on_disk
+from robbdd_tools.base.document import Document
+from robbdd_tools.base.files import FileState, file_state, read_text
 from robbdd_tools.features.workspace_files import MAX_FILES, model_files
-from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.index import FileIndex, language_of
+from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
+from robbdd_tools.syntax.sound_names import sound_names
+from robbdd_tools.syntax.split import split_once
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Document, Span
+    from robbdd_tools.base.document import Span
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.syntax.declaration import SymbolKind
+    from robbdd_tools.syntax.declaration import Symbol, SymbolKind
+
+
+Words = tuple[int, tuple[str, ...]]
+"""The maximum number of names in the qualified names of a declaration, and the names: first that of the declaration.
+
+If the number is 0, these are the qualified names.
+"""
+_DEPTHS = {"scene": 2, "bddx": 1, "scenex": 5, "ktree": 5}
+"""Maximum number of names in a qualified name: a pose is in a frame of a body of a graph of a scene instance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,33 +62,82 @@ def workspace_symbols(snapshot: Snapshot, folders: Iterable[str], query: str, mo
 
 def _fitting(snapshot: Snapshot, uri: str, letters: str) -> Iterator[Named]:
     source = snapshot.sources.get(uri)
-    paths = source.names.entries if isinstance(source, FileIndex) else () if source is not None else _paths(uri)
-    fitting = [path for path in paths if _has_letters(path.lower(), letters)]
-    index = source if isinstance(source, FileIndex) else file_on_disk(uri) if fitting else None
-    if index is None:
-        return
-    for path in fitting:
-        for declared in index.declared(path):
-            symbol = declared.symbol
-            yield Named(index.document, path, symbol.kind, symbol.span.shifted(declared.offset))
+    if isinstance(source, FileIndex):
+        paths = [path for path in source.names.entries if _has_letters(path.lower(), letters)]
+        for declared in (declared for path in paths for declared in source.declared(path)):
+            yield _named(source.document, declared.symbol, declared.offset)
+    elif source is None and language_of(uri) in LANGUAGES:
+        yield from _on_disk(uri, letters)
 
 
-def _paths(uri: str) -> tuple[str, ...]:
-    """Return the names that a file on disk declares. Many more files are cached than by ``file_on_disk``."""
+def _on_disk(uri: str, letters: str) -> Iterator[Named]:
+    """Yield the fitting names of an unopened file, those of one path together."""
     state = file_state(uri)
-    return () if state is None else _paths_of(state)
+    words = () if state is None else _words_of(state)
+    fitting = [number for number, own in enumerate(words) if _may_fit(own, letters)]
+    text = read_text(state.path) if state is not None and fitting else ""
+    if not isinstance(text, str) or not fitting:
+        return
+    document, language = Document(uri, 0, text), language_of(uri)
+    chunks = split_once(language, text)
+    found: dict[str, list[Named]] = {}
+    # The file may have been written since its words were read.
+    for chunk in (chunks[number] for number in fitting if number < len(chunks)):
+        checkpoint()
+        for symbol in parse_declaration(language, chunk.text).symbols:
+            if _has_letters(symbol.path.lower(), letters):
+                found.setdefault(symbol.path, []).append(_named(document, symbol, chunk.offset))
+    for several in found.values():
+        yield from several
+
+
+def _named(document: Document, symbol: Symbol, offset: int) -> Named:
+    return Named(document, symbol.path, symbol.kind, symbol.span.shifted(offset))
 
 
 @lru_cache(maxsize=MAX_FILES)
-def _paths_of(state: FileState) -> tuple[str, ...]:
-    index = file_on_disk(state.uri)
-    return () if index is None else tuple(index.names.entries)
+def _words_of(state: FileState) -> tuple[Words, ...]:
+    """Return the words of each declaration of a file."""
+    text = read_text(state.path)
+    if not isinstance(text, str):
+        return ()
+    language = language_of(state.uri)
+    return tuple(_words_in(language, chunk.text) for chunk in split_once(language, text))
+
+
+def _words_in(language: str, text: str) -> Words:
+    words = sound_names(language, text)
+    if words is None:
+        return 0, tuple(dict.fromkeys(symbol.path.lower() for symbol in parse_declaration(language, text).symbols))
+    # A clause of a scenario of a story has three names, a part of any other declaration two.
+    depth = _DEPTHS.get(language) or (3 if text.startswith("User") else 2)
+    return depth, tuple(map(_lower, words))
+
+
+def _may_fit(words: Words, letters: str) -> bool:
+    """Return whether a qualified name of a declaration may contain letters in their order."""
+    depth, names = words
+    if not depth:
+        return any(_has_letters(path, letters) for path in names)
+    wanted, place = _lower(letters), 0
+    for level in range(depth):
+        fitting = names[1:] if level else names[:1]
+        place = max((_letters_in(f"{name}.", wanted, place) for name in fitting), default=place)
+    return place == len(wanted)
+
+
+def _lower(text: str) -> str:
+    """Return a text in lower case, whatever follows it: only a sigma has another form at the end of a word."""
+    return text.lower().replace("ς", "σ")
+
+
+def _letters_in(text: str, letters: str, place: int) -> int:
+    """Return how many letters a text and the texts before it contain in their order, if those contain ``place``."""
+    position = 0
+    while place < len(letters) and (position := text.find(letters[place], position) + 1):
+        place += 1
+    return place
 
 
 def _has_letters(text: str, letters: str) -> bool:
-    position = 0
-    for letter in letters:
-        position = text.find(letter, position) + 1
-        if position == 0:
-            return False
-    return True
+    return _letters_in(text, letters, 0) == len(letters)

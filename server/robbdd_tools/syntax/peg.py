@@ -20,7 +20,9 @@ DEEPEST = 6000
 """Maximum depth of Python calls: some hundreds of nested brackets, far more than anybody writes. Calls between Python
 functions need no C stack."""
 _KEYWORD = re.compile(r"[^\d\W]\w*")
-_BLANK = re.compile(r"(?:[ \t\r\n]+|//[^\n]*)*")
+BLANK = r"(?:[ \t\r\n]+|//[^\n]*)*"
+"""The expression of white space and comments, which may precede each token."""
+_BLANK = re.compile(BLANK)
 Log = list[tuple[str, Any]]
 Parse = Callable[["State", int, Log], int]
 Make = Callable[["State", int], "tuple[int, Any] | None"]
@@ -154,8 +156,7 @@ class Compiled:
     def _compile(self, expression: grammar.Expression, rule: str) -> Parse:
         match expression:
             case grammar.Literal(text):
-                word = _KEYWORD.fullmatch(text) is not None
-                return _terminal(re.escape(text) + (r"\b" if word else ""), ("literal", text))
+                return _terminal(literal_pattern(text), ("literal", text))
             case grammar.Pattern(pattern):
                 return _terminal(pattern, ("rule", rule))
             case grammar.Use(name):
@@ -183,6 +184,11 @@ class Compiled:
             case operator:
                 separator = assignment.separator and self._compile(assignment.separator, rule)
                 return _several(one, separator, at_least_one=operator == "+=")
+
+
+def literal_pattern(text: str) -> str:
+    """Return the expression of a keyword or symbol. A keyword ends where its word ends."""
+    return re.escape(text) + (r"\b" if _KEYWORD.fullmatch(text) else "")
 
 
 def _reads_text(body: grammar.Expression, rules: Mapping[str, grammar.Expression]) -> bool:

@@ -66,6 +66,13 @@ def split(language: str, text: str) -> tuple[Chunk, ...]:
     return _chunks(text, scanned(language, text).starts)
 
 
+def split_once(language: str, text: str) -> tuple[Chunk, ...]:
+    """Return ``split(language, text)`` for a text that is not edited: nothing is cached."""
+    scan = Scan(text, [], [], [])
+    _continue(language, scan)
+    return _chunks(text, scan.starts)
+
+
 def _chunks(text: str, starts: list[int]) -> tuple[Chunk, ...]:
     first = starts[0] if starts else len(text)
     lead = len(text) - len(_LEAD.sub("", text, count=1))
