@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import pytest
 
+from features.judged_clauses import HOLDS, IRI, NS, VIOLATED, judged
 from gherkin_kit import edited
-from kit import MODEL, Fixture, fixture
+from kit import MODEL, fixture
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate, row_hints
-from robbdd_tools.features.hover import hover
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import (
-    Findings,
     JudgedScenario,
     Judgement,
     Results,
@@ -23,13 +21,8 @@ from robbdd_tools.features.run_verdicts import (
     from_json,
 )
 from robbdd_tools.features.scenarios import number_of_scenarios
-from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.variant_places import variants_of
 
-NS = "https://example.org/t/"
-IRI = f"{NS}in-tray"
-HOLDS = Judgement("in-tray", "holds", "+31 mm", 2e6, "✔ +31 mm", "")
-VIOLATED = Judgement("in-tray", "violated", "−12 mm", -0.012, "✗ −12 mm at 3.40 s", "")
 WORSE = Judgement("in-tray", "violated", "−40 mm", -0.040, "✗ −40 mm at 2.00 s", "")
 UNKNOWN = Judgement("in-tray", "unknown", "", 1e6, "? unknown: event never occurred", "")
 UNDEFINED = Judgement("in-tray", "undefined", "", 1e6, "? unknown: no step definition for 'x'", "")
@@ -42,19 +35,6 @@ TABLE = edited(
                 | <parts.bolt> | <arms.panda> | <places.tray_ws> |
                 | <parts.nut> | <arms.ur10> | <places.tray_ws> |""",
 )
-
-
-def judged(case: Fixture, *judgements: Judgement, iri: str = IRI) -> Findings:
-    """Findings of a run of the text as it is now, one scenario per judgement."""
-    digests, variant = digests_of(case.snapshot, case.uri), f"{NS}bench-to-tray"
-    results = Results()
-    for number, judgement in enumerate(judgements, start=1):
-        row = digests.rows.get((variant, number), "")
-        scenario = JudgedScenario(case.uri, variant, number, f"part = {number}", digests.variants[variant], row)
-        scenario.judge(iri, replace(judgement, digest=digests.clauses[iri]))
-        scenario.finished = True
-        results.add([scenario])
-    return findings_of(results)
 
 
 def hints(*judgements: Judgement, text: str = MODEL) -> list[str]:
@@ -321,48 +301,3 @@ def test_results_of_deleted_variants_are_forgotten_in_their_model_alone() -> Non
     results = Results(entries)
     results.drop_deleted("a", {"w"})
     assert [(entry.model, entry.variant) for entry in results] == [("a", "w"), ("b", "x")]
-
-
-def test_the_result_is_in_the_hover_everywhere_in_a_clause_with_what_the_word_means() -> None:
-    case = fixture(MODEL)
-    findings = judged(case, HOLDS, VIOLATED)
-    text = case.snapshot.document(case.uri).text
-    start = text.index("in-tray: holds")
-    line = text[start : text.index("\n", start)]
-    found = [hover(case.snapshot, case.uri, start + place, findings) for place in range(len(line))]
-    assert [place for place, one in enumerate(found) if one is None or "−12 mm" not in one.markdown] == []
-    judgements = {one.judged[1].outcome for one in found if one is not None and one.judged is not None}
-    assert (judgements, len([one for one in found if one is not None and one.judged])) == ({"violated"}, len(line))
-    on_name = found[line.index("<part>") + 1]
-    assert on_name is not None
-    assert on_name.markdown.startswith("**variable** `fetch.part`")
-
-
-EVERY_KIND = edited(
-    "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
-    """((in-tray: holds(<part> is located at <goal>, after <end>) or 'lamp' after <end>) and 'bell' after <end>
-            and (not near: holds(<part> is located at <goal>, before <end>))
-            and (var other exists in <parts>) such that { kept: holds(<other> is at rest, after <end>) })""",
-)
-
-
-def test_each_token_of_each_kind_of_clause_shows_the_result_of_its_innermost_clause() -> None:
-    case = fixture(EVERY_KIND)
-    places = list(clauses_in(case.snapshot, case.uri))
-    assert len(places) >= 9
-    verdicts = {one.iri: replace(VIOLATED, said=f"✗ −{number}.5 mm") for number, one in enumerate(places)}
-    digests = digests_of(case.snapshot, case.uri)
-    scenario = JudgedScenario(case.uri, f"{NS}bench-to-tray", 1, "part = 1", "", "")
-    for iri, verdict in verdicts.items():
-        scenario.judge(iri, replace(verdict, digest=digests.clauses[iri]))
-    findings = findings_of([scenario])
-    text = case.snapshot.document(case.uri).text
-    for place in places:
-        for token in re.finditer(r"[\w.-]+|[^\w\s]", text[place.span.start : place.span.end]):
-            offset = place.span.start + token.start()
-            around = [one for one in places if one.span.contains(offset)]
-            innermost = min(around, key=lambda one: one.span.end - one.span.start)
-            found = hover(case.snapshot, case.uri, offset, findings)
-            assert found is not None, token
-            assert found.judged == (scenario, scenario.clauses[innermost.iri]), token
-            assert verdicts[innermost.iri].said in found.markdown, token

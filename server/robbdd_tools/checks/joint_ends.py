@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CODE = "joint-ends"
 _Body = tuple[str, str, str]
-"""A body: its file, its qualified name, and the name as written, which tells instances of one template apart."""
+"""A body: its file, its qualified name, and the name as written, which distinguishes instances of one template."""
 
 
 def joint_ends(site: Site) -> Iterator[Diagnostic]:
