@@ -40,6 +40,11 @@ class Call:
         raise SceneError(f"'{self.behaviour}' needs one {slot}, not a set of them")
 
     @property
+    def agents(self) -> tuple[str, ...]:
+        """The agents whose arms the behaviour moves."""
+        return tuple(self.element(slot) for slot in ("agent", "receiver") if slot in self.arguments)
+
+    @property
     def places(self) -> tuple[str, ...]:
         """The workspaces where the behaviour may place."""
         found = self.arguments["workspace"]
@@ -85,7 +90,7 @@ def groups_of(calls: Sequence[Call]) -> list[list[int]]:
             groups.append([index])
     for group in groups:
         agents: set[str] = set()
-        for agent in (calls[index].element("agent") for index in group) if len(group) > 1 else ():
+        for agent in (agent for index in group for agent in calls[index].agents) if len(group) > 1 else ():
             if agent in agents:
                 raise SceneError(f"'{agent}' cannot execute two behaviours at the same time ('meanwhile')")
             agents.add(agent)

@@ -61,14 +61,18 @@ class BehaviourExecutors:
             return error
         return None
 
-    def controller(self, call: Call) -> PickPlace:
-        """Return the controller of a behaviour's agent. Raises ``SceneError`` if the scene has no such agent."""
-        agent = call.element("agent")
+    def controller(self, agent: str) -> PickPlace:
+        """Return the controller of an agent. Raises ``SceneError`` if the scene has no such agent."""
         if agent not in self._simulation.robots:
             raise SceneError(f"the scene has no agent '{agent}'")
         if agent not in self._controllers:
             self._controllers[agent] = PickPlace(self._simulation, agent, self._emit, self._note_choice)
         return self._controllers[agent]
+
+    def park(self, agent: str) -> Iterator[None]:
+        """Move the arm of an agent home, unless its gripper holds something or users' code moves it."""
+        if not self.is_users and agent in self._controllers and not self._simulation.grips(agent):
+            yield from self._controllers[agent].park()
 
     def refuse_nowhere(self, call: Call) -> None:
         """Raise ``SceneError`` if no object carries a place of a behaviour.
@@ -81,7 +85,7 @@ class BehaviourExecutors:
             raise SceneError(f"'{call.behaviour}' cannot place at {one}: nothing in the scene carries that workspace")
 
     def _behaviour(self, call: Call) -> Iterator[None]:
-        controller = self.controller(call)
+        controller = self.controller(call.element("agent"))
         if self._implementation is not None and self.is_users:
             world = AgentWorld(self._simulation, call.element("agent"), self._emit)
             return run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)

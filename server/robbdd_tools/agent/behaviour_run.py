@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
 from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_calls import Call, Choice, Timing, groups_of
 from robbdd_tools.agent.behaviour_executors import BehaviourExecutors
+from robbdd_tools.agent.idle_arms import IdleArms
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
 from robbdd_tools.catalog.coordination import EXTERNAL, emitter
 from robbdd_tools.catalog.executors import DEFAULT, executes
@@ -91,6 +92,7 @@ class BehaviourRun:
         self._executors = BehaviourExecutors(
             self.simulation, self._implementation, self.regions, self._emit, self._note_choice
         )
+        self._idle_arms = IdleArms((agent for call in self._calls for agent in call.agents), self._executors.park)
         self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
         self.correct_places = spec.scene.correct_places
         self.settings = read_back(self.simulation, spec.scene)
@@ -146,15 +148,25 @@ class BehaviourRun:
         self._emit(START)
         yield from _idle(self._timing.lead)
         yield from self._in_turn() if self.tree is None else self.tree.steps()
-        yield from _idle(REST)
+        for _ in _idle(REST):
+            self._idle_arms.move(self.simulation.ticks)
+            yield
         self._emit(END)
         yield from _idle(self._timing.tail)
 
     def _in_turn(self) -> Iterator[None]:
         for group in self._groups:
+            due = [self._calls[index] for index in group if not self._awaited(self._calls[index])]
+            yield from self._make_way([agent for call in due for agent in call.agents])
             yield from self._together(group)
             if self.failures:
                 return
+
+    def _make_way(self, agents: Sequence[str]) -> Iterator[None]:
+        """Wait until the idle arms of other agents are out of the way of those that act next."""
+        self._idle_arms.park_all(agents)
+        while self._idle_arms.move(self.simulation.ticks):
+            yield
 
     def _together(self, group: Sequence[int]) -> Iterator[None]:
         """Execute the behaviours of a group at the same time, until all of them have ended."""
@@ -170,17 +182,20 @@ class BehaviourRun:
                         self.failures[index] = end.value
                     else:
                         self.succeeded.add(index)
+                    if running:
+                        self._idle_arms.park_all()
                 finally:
                     self._active = None
             if not running:
                 return
+            self._idle_arms.move(self.simulation.ticks)
             self._refuse_to_wait(running)
             yield
 
     def _when_due(self, index: int) -> Generator[None, None, str]:
-        """Wait for the events that a behaviour requires, then execute it."""
+        """Wait for the events that a behaviour requires, and then for arms that make room; execute it."""
         call = self._calls[index]
-        while self._awaited(call):
+        while self._awaited(call) or (call.awaited and self._idle_arms.are_moving):
             yield
         self.begun.add(index)
         return (yield from self.attempt(call))
@@ -193,11 +208,12 @@ class BehaviourRun:
         own = emitter(call.part, "")
         return [event for event, name in emitters.items() if name not in occurred and not name.startswith(own)]
 
-    def _refuse_to_wait(self, running: Iterable[int]) -> None:
+    def _refuse_to_wait(self, running: Collection[int]) -> None:
         """Raise ``SimulationError`` if every behaviour that has not ended waits for an event."""
-        if any(index in self.begun for index in running):
+        waiting = [self._awaited(self._calls[index]) for index in running if index not in self.begun]
+        if len(waiting) < len(running) or not all(waiting):
             return
-        event = next(event for index in running for event in self._awaited(self._calls[index]))
+        event = waiting[0][0]
         external = self._emitters.get(event, EXTERNAL) == EXTERNAL
         reason = "nothing in the simulation emits it" if external else "no behaviour that could emit it is executed"
         raise SimulationError(f"the next behaviour waits for event {event} at {self.simulation.time:.2f} s: {reason}")
@@ -210,8 +226,10 @@ class BehaviourRun:
 
         Returns the reason why the behaviour failed; empty if it succeeded.
         """
+        self._idle_arms.begin(call.agents)
         error = yield from self._executors.attempt(call)
         if error is None:
+            self._idle_arms.end(call.agents)
             return ""
         self.remark = str(error)
         self.failed = True
@@ -219,8 +237,15 @@ class BehaviourRun:
             # The time limit may end the execution while the arm withdraws.
             self.failures[self._active] = str(error)
         if not self._executors.is_users:
-            yield from self._executors.controller(call).withdraw()
+            for agent in call.agents:
+                yield from self._executors.controller(agent).withdraw()
+        self._idle_arms.end(call.agents)
         return str(error)
+
+    def attempt_next(self, call: Call) -> Generator[None, None, str]:
+        """Execute a behaviour of a behaviour tree when the arms of other agents that are idle have made room."""
+        yield from self._make_way(call.agents)
+        return (yield from self.attempt(call))
 
     def _note_choice(self, place: str) -> None:
         nodes = () if self.tree is None else self.tree.active
@@ -228,7 +253,8 @@ class BehaviourRun:
 
     def _settle(self) -> None:
         for call in self._calls:
-            self._executors.controller(call)
+            for agent in call.agents:
+                self._executors.controller(agent)
             self._executors.refuse_nowhere(call)
         refuse_overlaps(self.simulation)
         try:
@@ -244,7 +270,7 @@ class BehaviourRun:
         """Put the object to be placed into the gripper before the scenario starts."""
         self._muted = True
         try:
-            for _ in self._executors.controller(call).pick(call.element("object")):
+            for _ in self._executors.controller(call.element("agent")).pick(call.element("object")):
                 self.simulation.tick()
         except BehaviourError as error:
             raise SceneError(f"'{call.element('object')}' cannot be put into the gripper: {error}") from error
@@ -276,7 +302,7 @@ class BehaviourRun:
 def _tree_run(spec: TreeSpec, course: BehaviourRun) -> TreeRun:
     from robbdd_tools.agent.tree_execution import TreeRun
 
-    return TreeRun(spec, lambda leaf: course.attempt(Call(leaf.behaviour, leaf.arguments)), course.stamp)
+    return TreeRun(spec, lambda leaf: course.attempt_next(Call(leaf.behaviour, leaf.arguments)), course.stamp)
 
 
 def _check_implementation(implementation: Implementation | None, calls: Iterable[Call]) -> None:

@@ -28,7 +28,7 @@ class Clearance:
     """Collision checks of one robot with the world in ``state`` at construction; nothing is stepped."""
 
     def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
-        """Ignore contacts with the object ``spare``: it is the one to be gripped."""
+        """Ignore contacts with the object ``spare``, if any: it is the one to be gripped."""
         self._model: Any = simulation.model
         self._data: Any = simulation.scratch
         self._state: FloatArray = state.qpos.copy()
@@ -37,7 +37,7 @@ class Clearance:
         trees = self._model.body_rootid
         root = trees[self._model.geom_bodyid[robot.pads[0]]]
         self._own = trees[self._model.geom_bodyid] == root
-        self._ignored = self._model.geom_bodyid == self._model.body(spare).id
+        self._ignored = self._model.geom_bodyid == (self._model.body(spare).id if spare else -1)
 
     def depth(self, joints: FloatArray) -> float:
         """Return the penetration (m) of the arm with open fingers into anything else; 0 without a collision."""

@@ -88,6 +88,16 @@ class ContactForces:
         """The watched agents."""
         return self._agents
 
+    @property
+    def row(self) -> int:
+        """The number of samples so far."""
+        return self._row
+
+    def touched_since(self, row: int, agent: str) -> tuple[str, ...]:
+        """Return what an agent has touched from a sample on, by name."""
+        pairs = ((other, rows) for (one, other), rows in self._peaks.items() if one == agent)
+        return tuple(sorted(other for other, rows in pairs if any(one >= row for one in rows)))
+
     def peaks(self, size: int) -> Mapping[Pair, FloatArray]:
         """Return the largest force (N) before each of the first ``size`` samples, by pair in contact: (size,)."""
         return series(self._peaks, size)

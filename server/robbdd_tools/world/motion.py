@@ -6,7 +6,9 @@ redundant arm turns with its first joint.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
@@ -97,16 +99,41 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
     length = _length(start, goal)
     turn = abs(goal.turn - start.turn)
     count = max(2, ceil(max(length / SPACING, turn / 0.1)))
-    shares = np.linspace(0.0, 1.0, count + 1)
+    poses = [_between(start, goal, float(share)) for share in np.linspace(0.0, 1.0, count + 1)[1:]]
+    return _along(arm, joints, poses, (length, turn), limits, speed)
+
+
+def plan_through(arm: Arm, joints: FloatArray, poses: Sequence[ToolPose], limits: FloatArray, speed: float) -> Motion:
+    """Plan a motion from joint positions (n,) through tool poses at equal distances.
+
+    ``limits`` and ``speed`` are those of ``plan``. Raises ``Unreachable``.
+    """
+    pairs = list(pairwise((present_pose(arm, joints), *poses)))
+    length = sum(_length(one, other) for one, other in pairs)
+    turn = sum(abs(other.turn - one.turn) for one, other in pairs)
+    return _along(arm, joints, poses, (length, turn), limits, speed)
+
+
+def _along(
+    arm: Arm,
+    joints: FloatArray,
+    poses: Sequence[ToolPose],
+    way: tuple[float, float],
+    limits: FloatArray,
+    speed: float,
+) -> Motion:
+    """Return the motion through tool poses at equal distances; ``way`` is the length (m) and the turn (rad) of it."""
+    length, turn = way
+    shares = np.linspace(0.0, 1.0, len(poses) + 1)
     points = [joints]
     last = joints
-    for share in shares[1:]:
+    for pose in poses:
         # Extrapolate the path: the search starts one step ahead.
         seed = 2.0 * points[-1] - last
         last = points[-1]
-        points.append(_next(arm, points[-1], seed, _between(start, goal, float(share))))
+        points.append(_next(arm, points[-1], seed, pose))
     path = np.array(points)
-    rate = np.abs(np.diff(path, axis=0)).max(axis=0) * count
+    rate = np.abs(np.diff(path, axis=0)).max(axis=0) * len(poses)
     duration = max(
         SHORTEST,
         PEAK_SPEED * length / speed,

@@ -11,23 +11,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.arm_control import ArmControl
+from robbdd_tools.world.arm_kinematics import Unreachable
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
-from robbdd_tools.world.gripper import Step, gripper_of
-from robbdd_tools.world.motion import ToolPose, plan, present_pose, tool_pose
+from robbdd_tools.world.motion import ToolPose, tool_pose
 from robbdd_tools.world.put_down import Target, has_room, targets
-from robbdd_tools.world.reaching import Approach, Obstruction, approaches, at_travel, joints_at
+from robbdd_tools.world.reaching import Approach, Obstruction, approaches, joints_at
 from robbdd_tools.world.travel_clearance import height_over
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.grasp import Grasp
+    from robbdd_tools.world.gripper import Step
     from robbdd_tools.world.simulation import Simulation
 
-SLIPPED = 3
-"""Ticks in a row without grip that count as a loss."""
 STILL, STILL_TURN, STILL_FOR = 2e-3, 0.02, 0.3
 """An object on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s).
 
@@ -40,8 +39,8 @@ RISE = 1e-3
 """Height difference (m) from which on the tool rises before it travels: on a slant it would hit the place."""
 
 
-class PickPlace:
-    """Controls one robot of a simulation. Every generator sets the controls for one tick before each ``yield``.
+class PickPlace(ArmControl):
+    """Picks and places with one arm.
 
     ``emit`` is called with the name of each event when it occurs, ``note_choice`` with the workspace chosen among
     several.
@@ -54,16 +53,9 @@ class PickPlace:
         emit: Callable[[str], None],
         note_choice: Callable[[str], None] = lambda _: None,
     ) -> None:
-        self._simulation = simulation
-        self._robot = simulation.robots[agent]
-        self._arm = arm_of(self._robot.model)
-        self._limits: FloatArray = np.array(self._robot.model.velocity_limits)
+        super().__init__(simulation, agent)
         self._emit = emit
         self._note_choice = note_choice
-        self._joints: FloatArray = self._arm.home.copy()
-        self._gripper = gripper_of(self._robot.model)
-        self.control = self._robot.model.gripper_open
-        self._held: str | None = None
         self._grasp: Grasp | None = None
 
     def pick(self, name: str) -> Step:
@@ -74,10 +66,11 @@ class PickPlace:
         """
         yield from self._until_at_rest(name)
         self._emit("pick-start")
+        since = self.simulation.forces.row
         best = yield from self._approach(name)
-        yield from self._take(best, name)
-        self._held, self._grasp = name, best.grasp
-        yield from self.move(self._at_travel(best.at))
+        yield from self._take(best, name, since)
+        self.held, self._grasp = name, best.grasp
+        yield from self.move(self.at_travel(best.at))
         self._emit("pick-end")
 
     def place(self, name: str, workspaces: Sequence[str]) -> Step:
@@ -85,34 +78,25 @@ class PickPlace:
 
         Of several workspaces, choose the first with room for the object, else the first that can be reached.
         """
-        if self._held != name or self._grasp is None:
-            raise BehaviourError(f"{self._robot.name} does not hold {name}")
+        if self.held != name or self._grasp is None:
+            raise BehaviourError(f"{self.robot.name} does not hold {name}")
         self._emit("place-start")
         down = self._choose_place(name, workspaces, self._grasp)
-        over, here = self._carried_to(down, name, self._grasp), present_pose(self._arm, self._joints)
+        over, here = self._carried_to(down, name, self._grasp), self.tool
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
         yield from self.move(over)
-        yield from self.move(down, self._robot.model.approach_speed)
-        self._held = None
-        yield from self._gripper.release(self)
-        yield from self.wait(round(self._robot.model.release_time / TICK))
-        yield from self.move(self._at_travel(down))
+        yield from self.move(down, self.robot.model.approach_speed)
+        self.held = None
+        yield from self.gripper.release(self)
+        yield from self.wait(round(self.robot.model.release_time / TICK))
+        yield from self.move(self.at_travel(down))
         self._emit("place-end")
 
     def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""
         yield from self.pick(name)
         yield from self.place(name, workspaces)
-
-    def withdraw(self) -> Step:
-        """Open the gripper and withdraw upwards after a failure."""
-        self._held = None
-        yield from self._gripper.release(self)
-        try:
-            yield from self.move(self._at_travel(present_pose(self._arm, self._joints)))
-        except BehaviourError:
-            return
 
     def _approach(self, name: str) -> Generator[None, None, Approach]:
         """Open the gripper and move above the grasp; return the grasp; raises ``BehaviourError``.
@@ -123,22 +107,22 @@ class PickPlace:
         given_up = self.time + PATIENCE
         while True:
             best = self._choose_grasp(name)
-            planned = self._simulation.pose(name)
-            yield from self._gripper.release(self)
+            planned = self.simulation.pose(name)
+            yield from self.gripper.release(self)
             yield from self.move(best.above)
-            if not self._simulation.belts or not _has_moved(planned, self._simulation.pose(name)):
+            if not self.simulation.belts or not _has_moved(planned, self.simulation.pose(name)):
                 return best
             if self.time > given_up:
                 raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
             yield from self._until_at_rest(name)
 
     def _until_at_rest(self, name: str) -> Step:
-        if not self._simulation.belts or name not in self._simulation.world.cast.objects:
+        if not self.simulation.belts or name not in self.simulation.world.cast.objects:
             return
-        last, since = self._simulation.pose(name), 0
+        last, since = self.simulation.pose(name), 0
         for _ in range(round(PATIENCE / TICK)):
             yield from self.wait(1)
-            here, since = self._simulation.pose(name), since + 1
+            here, since = self.simulation.pose(name), since + 1
             if _has_moved(last, here):
                 last, since = here, 0
             if since * TICK >= STILL_FOR:
@@ -148,24 +132,28 @@ class PickPlace:
     def _choose_grasp(self, name: str) -> Approach:
         """Return the grasp with the most room for the hand."""
         missed = Obstruction()
-        found = approaches(self._simulation, self._robot, name, missed=missed)
+        found = approaches(self.simulation, self.robot, name, missed=missed)
         best = min(found, key=lambda one: (round(one.depth, 4), abs(one.at.turn)), default=None)
         if best is None:
-            raise BehaviourError(f"{self._robot.name} cannot reach {name}{missed}")
+            raise BehaviourError(f"{self.robot.name} cannot reach {name}{missed}")
         return best
 
-    def _take(self, best: Approach, name: str) -> Step:
+    def _take(self, best: Approach, name: str, since: int) -> Step:
+        """Grip an object; ``since`` is the first sample of the approach. Raises ``BehaviourError``."""
         try:
-            yield from self._gripper.take(self, best.at, name)
+            yield from self.gripper.take(self, best.at, name)
         except BehaviourError as error:
-            if not best.touched:
+            if best.touched:
+                raise BehaviourError(f"{error}: at the grasp, the arm touches {best.touched}") from error
+            touched = [one for one in self.simulation.forces.touched_since(since, self.robot.name) if one != name]
+            if not touched:
                 raise
-            raise BehaviourError(f"{error}: at the grasp, the arm touches {best.touched}") from error
+            raise BehaviourError(f"{error}: on its way, the arm touched {', '.join(touched)}") from error
 
     def _choose_place(self, name: str, workspaces: Sequence[str], grasp: Grasp) -> ToolPose:
         if len(workspaces) == 1:
             return self._choose_target(name, workspaces[0], grasp)
-        simulation, robot = self._simulation, self._robot
+        simulation, robot = self.simulation, self.robot
         # Sorting is stable: grasps with equal room keep their order.
         for workspace in sorted(workspaces, key=lambda one: not has_room(simulation, robot, name, one)):
             try:
@@ -178,7 +166,7 @@ class PickPlace:
 
     def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
         """Return the lowest tool pose over the first target that the arm reaches without a collision."""
-        simulation, robot = self._simulation, self._robot
+        simulation, robot = self.simulation, self.robot
         clearance = Clearance(simulation, robot, name, simulation.data)
         missed = Obstruction()
         for target in targets(simulation, robot, name, workspace):
@@ -190,7 +178,7 @@ class PickPlace:
     def _lower_onto(
         self, target: Target, name: str, grasp: Grasp, clearance: Clearance, missed: Obstruction
     ) -> ToolPose | None:
-        robot = self._robot
+        robot = self.robot
         x, y, surface = target.position
         height = surface + grasp.below + target.gap
         top = max(robot.model.travel_height, height)
@@ -198,7 +186,7 @@ class PickPlace:
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
             try:
-                joints = joints_at(self._arm, self._carried_to(pose, name, grasp), pose)
+                joints = joints_at(self.arm, self._carried_to(pose, name, grasp), pose)
             except Unreachable as error:
                 missed.note(error)
                 return None
@@ -211,56 +199,13 @@ class PickPlace:
 
     def _carried_to(self, pose: ToolPose, name: str, grasp: Grasp) -> ToolPose:
         """Return the pose above a place to which the tool carries an object."""
-        over = self._at_travel(pose)
-        room = self._robot.model.carry_clearance
+        over = self.at_travel(pose)
+        room = self.robot.model.carry_clearance
         if not room:
             return over
-        here = present_pose(self._arm, self._joints)
-        needed = height_over(self._simulation, self._robot, name, here, pose) + room + grasp.below
+        here = self.tool
+        needed = height_over(self.simulation, self.robot, name, here, pose) + room + grasp.below
         return replace(over, height=max(over.height, needed))
-
-    def _at_travel(self, pose: ToolPose) -> ToolPose:
-        return at_travel(self._robot, pose)
-
-    @property
-    def time(self) -> float:
-        """Simulated time, s."""
-        return self._simulation.time
-
-    def senses_object(self, name: str) -> bool:
-        """Whether the gripping faces hold an object."""
-        return self._simulation.holds(self._robot.name, name)
-
-    def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
-        """Move the tool, at most at ``speed`` (m/s), until a condition holds.
-
-        Raises ``BehaviourError`` if the path exceeds the joint limits or the held object is lost.
-        """
-        limit = self._robot.model.tool_speed
-        try:
-            motion = plan(self._arm, self._joints, goal, self._limits, min(limit, speed or limit))
-        except Unreachable as error:
-            where = f"at {self.time:.2f} s, {error}"
-            raise BehaviourError(
-                f"{self._robot.name} cannot follow its path within its joint limits {where}"
-            ) from error
-        missing = 0
-        ahead = motion.joints + self._robot.lead * motion.velocities
-        for joints, target in zip(motion.joints, ahead, strict=True):
-            self._joints = joints
-            self._simulation.command(self._robot, target, self.control)
-            yield
-            if until is not None and until():
-                return
-            missing = 0 if self._held is None or self.senses_object(self._held) else missing + 1
-            if missing == SLIPPED:
-                raise BehaviourError(f"gripper lost {self._held} at {self.time:.2f} s")
-
-    def wait(self, ticks: int) -> Step:
-        """Stay in place."""
-        for _ in range(ticks):
-            self._simulation.command(self._robot, self._joints, self.control)
-            yield
 
 
 def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:

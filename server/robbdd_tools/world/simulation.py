@@ -163,6 +163,15 @@ class Simulation:
         """Whether the agent's gripper holds the object."""
         return bool(self._grips.held[agent][self._column[name]])
 
+    def grips(self, agent: str) -> bool:
+        """Whether the agent's gripper holds anything."""
+        return bool(self._grips.held[agent].any())
+
+    def targets(self, robot: Robot) -> FloatArray:
+        """Return the joint positions (rad, shape (n,)) to which the arm's servos move."""
+        positions: FloatArray = self._act[robot.targets].copy()
+        return positions
+
     def joint_positions(self, robot: Robot) -> FloatArray:
         """Return the arm's joint positions, rad, shape (n,)."""
         positions: FloatArray = self.data.qpos[robot.joints]

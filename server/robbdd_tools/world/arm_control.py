@@ -1,0 +1,133 @@
+"""Move one arm of a simulation and its gripper; what the arm does last is kept from one behaviour to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.gripper import Step, gripper_of
+from robbdd_tools.world.motion import Motion, ToolPose, plan, plan_through, present_pose
+from robbdd_tools.world.parking import parking_pose
+from robbdd_tools.world.reaching import at_travel
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.simulation import Simulation
+
+SLIPPED = 3
+"""Ticks in a row without grip that count as a loss."""
+ARRIVED = 1e-3
+"""Difference (m, rad) up to which an arm is at its parking pose."""
+
+
+class ArmControl:
+    """Moves one arm. Every generator sets the controls for one tick before each ``yield``.
+
+    - ``joints``: the joint positions (rad) that the servos follow.
+    - ``control``: the value of the gripper's actuator.
+    - ``held``: the element that the gripper holds; the loss of it ends a motion.
+    """
+
+    def __init__(self, simulation: Simulation, agent: str) -> None:
+        self.simulation = simulation
+        self.robot = simulation.robots[agent]
+        self.arm = arm_of(self.robot.model)
+        self.gripper = gripper_of(self.robot.model)
+        self.joints: FloatArray = self.arm.home.copy()
+        self.control = self.robot.model.gripper_open
+        self.held: str | None = None
+        self._limits: FloatArray = np.array(self.robot.model.velocity_limits)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.simulation.time
+
+    @property
+    def tool(self) -> ToolPose:
+        """The pose to which the servos move the tool."""
+        return present_pose(self.arm, self.joints)
+
+    def senses_object(self, name: str) -> bool:
+        """Whether the gripping faces hold an object."""
+        return self.simulation.holds(self.robot.name, name)
+
+    def at_travel(self, pose: ToolPose) -> ToolPose:
+        """Return a tool pose raised to the travelling height."""
+        return at_travel(self.robot, pose)
+
+    def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
+        """Move the tool, at most at ``speed`` (m/s), until a condition holds.
+
+        Raises ``BehaviourError`` if the path exceeds the joint limits or the held object is lost.
+        """
+        yield from self._follow(lambda limit: plan(self.arm, self.joints, goal, self._limits, limit), speed, until)
+
+    def move_through(self, poses: Sequence[ToolPose], speed: float, until: Callable[[], bool] | None = None) -> Step:
+        """Move the tool through some poses without a stop. Raises the same."""
+        yield from self._follow(
+            lambda limit: plan_through(self.arm, self.joints, poses, self._limits, limit), speed, until
+        )
+
+    def _follow(
+        self, planned: Callable[[float], Motion], speed: float | None, until: Callable[[], bool] | None
+    ) -> Step:
+        limit = self.robot.model.tool_speed
+        try:
+            motion = planned(min(limit, speed or limit))
+        except Unreachable as error:
+            where = f"at {self.time:.2f} s, {error}"
+            raise BehaviourError(f"{self.robot.name} cannot follow its path within its joint limits {where}") from error
+        missing = 0
+        ahead = motion.joints + self.robot.lead * motion.velocities
+        for joints, target in zip(motion.joints, ahead, strict=True):
+            self.joints = joints
+            self.simulation.command(self.robot, target, self.control)
+            yield
+            if until is not None and until():
+                return
+            missing = 0 if self.held is None or self.senses_object(self.held) else missing + 1
+            if missing == SLIPPED:
+                raise BehaviourError(f"gripper lost {self.held} at {self.time:.2f} s")
+
+    def wait(self, ticks: int) -> Step:
+        """Stay in place."""
+        for _ in range(ticks):
+            self.simulation.command(self.robot, self.joints, self.control)
+            yield
+
+    def withdraw(self) -> Step:
+        """Open the gripper and withdraw upwards after a failure."""
+        self.held = None
+        yield from self.gripper.release(self)
+        try:
+            yield from self.move(self.at_travel(self.tool))
+        except BehaviourError:
+            return
+
+    def park(self) -> Step:
+        """Move the tool out of the way of the other arms; without a path, stay."""
+        # A controller without planning may have moved the arm.
+        self.joints = self.simulation.targets(self.robot)
+        place = parking_pose(self.simulation, self.robot)
+        if place is None or _distance(self.tool, place) <= ARRIVED:
+            return
+        try:
+            yield from self.move(place)
+        except BehaviourError:
+            return
+
+
+def _distance(one: ToolPose, other: ToolPose) -> float:
+    """Return the largest difference (m, rad) of two tool poses."""
+    pairs = (
+        (one.radius, other.radius),
+        (one.bearing, other.bearing),
+        (one.height, other.height),
+        (one.turn, other.turn),
+    )
+    return max(abs(first - second) for first, second in pairs)
