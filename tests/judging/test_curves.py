@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from judging.test_decisions import EVENTS, REGIONS, a_trace
+from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence
+from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.parsed_sentences import read_clause, read_step
 from robbdd_tools.monitor.trace import EventStamp
@@ -27,6 +29,23 @@ def test_a_set_counts_as_its_verdict_does() -> None:
     assert least('"ball" is located at "any of [\'right\', \'left\']" after event "t:e"') == [
         (pytest.approx(0.08), False)
     ]
+
+
+def test_elements_that_hold_at_different_times_have_the_curve_of_the_one_that_decides() -> None:
+    away = (1.0, 0.0, 0.02)
+    ball = [(0.0, 0.0, 0.02), *still(4, away)]
+    cube = [*still(4, away), (0.0, 0.0, 0.01)]
+    bins = {"bin1": still(5, (0.0, 0.0, 0.0)), "bin2": still(5, (1.0, 0.0, 0.0))}
+    trace = trace_of({**bins, "ball": ball, "cube": cube}, {"t:e": 0.0})
+    sentence = read_clause(
+        '"[\'ball\', \'cube\']" is located at "left" at some time within 0.4 seconds after event "t:e"'
+    )
+    verdict = decide(sentence, trace, REGIONS, EVENTS.keys())
+    assert verdict.robustness is not None
+    assert verdict.robustness > 0
+    (found,) = curves(sentence, trace, REGIONS)
+    assert max(found.margins) == pytest.approx(verdict.robustness)
+    assert min(found.margins) < 0
 
 
 def test_where_a_condition_does_not_apply_the_curve_has_no_points() -> None:
@@ -74,6 +93,7 @@ def test_a_behaviour_lasts_from_its_first_event_to_its_last(tmp_path: Path) -> N
                     "reason": "",
                     "unit": "",
                     "negated": False,
+                    "some_time": False,
                     "times": [],
                     "margins": [],
                 }

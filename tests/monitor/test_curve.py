@@ -63,6 +63,18 @@ def test_a_long_curve_is_thinned_out_and_keeps_what_decides(seed: int) -> None:
     assert {0.2, 0.6} <= set(found.times)
 
 
+def test_a_long_curve_keeps_the_largest_margin_where_one_sample_suffices() -> None:
+    trace = a_trace(LONG)
+    margins = np.cos(np.arange(LONG) * 0.9)
+    margins[3:5] = 2.0, 1.5
+    margins[7] = 3.0
+    during = During("t:a", "t:b", some_time=True)
+    found = curve(Curve(), during, trace, lambda rows: margins[rows.first : rows.last + 1])
+    assert found.some_time
+    assert len(found.times) < LONG
+    assert (0.3, 2.0) in zip(found.times, found.margins, strict=True)
+
+
 def test_a_sample_without_a_number_is_no_gap_in_the_rest() -> None:
     trace = a_trace()
     values = np.array([np.nan, 1, 2, np.nan, 4, 5, 6, 7, 8, 9, np.inf])

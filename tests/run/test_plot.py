@@ -56,6 +56,15 @@ def test_a_negated_clause_wants_the_opposite() -> None:
     assert [mark.get("fill") for mark in drawn(negated=True).iter(f"{SVG}circle")] == [GOOD]
 
 
+def test_the_largest_margin_is_marked_where_one_sample_suffices() -> None:
+    for negated, color in ((False, GOOD), (True, BAD)):
+        picture = drawn(some_time=True, negated=negated)
+        (mark,) = picture.iter(f"{SVG}circle")
+        (line,) = picture.iter(f"{SVG}polyline")
+        assert f"{mark.get('cx')},{mark.get('cy')}" == str(line.get("points")).split()[2]
+        assert mark.get("fill") == color
+
+
 def test_without_a_window_there_is_a_curve_alone() -> None:
     picture = drawn(start=None, end=None)
     assert not list(picture.iter(f"{SVG}circle")) + list(picture.iter(f"{SVG}rect"))

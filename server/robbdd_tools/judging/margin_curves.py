@@ -81,12 +81,15 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
 def fluent_margins(fluent: Fluent, evidence: WindowEvidence) -> FloatArray:
     """Return the margin of a fluent at each sample of a window, shape (n,): over its sets, the one that decides.
 
+    If one sample suffices, this is the margin of one element at all samples.
     It is infinite at samples at which the fluent's condition does not hold. Raises the errors of evaluators, which may
     be users' code.
     """
-    every = (list(group) for group in alternatives(fluent))
-    worst = [np.min([_margins(fluent, evidence, one) for one in group], axis=0) for group in every]
-    best: FloatArray = np.max(worst, axis=0)
+    groups = ([_margins(fluent, evidence, one) for one in group] for group in alternatives(fluent))
+    if fluent.time.some_time:
+        # Each element has a moment of its own, so the elements are compared by their largest margins.
+        return max((min(group, key=_largest) for group in groups), key=_largest)
+    best: FloatArray = np.max([np.min(group, axis=0) for group in groups], axis=0)
     return best
 
 
@@ -97,6 +100,10 @@ def unit_of(fluent: Fluent, trace: Trace, regions: Regions) -> str:
             first = next(next(alternatives(fluent)))
             return fluent.predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), first.arguments)
     return fluent.predicate.unit
+
+
+def _largest(margins: FloatArray) -> float:
+    return float(np.max(margins, where=np.isfinite(margins), initial=-np.inf))
 
 
 def _margins(fluent: Fluent, evidence: WindowEvidence, instance: Instance) -> FloatArray:

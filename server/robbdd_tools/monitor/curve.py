@@ -33,6 +33,7 @@ class Curve:
     - ``start`` and ``end``: the window of the fluent (s); ``None`` if it has none, because of ``reason``.
     - ``margins``: the margins in the SI unit ``unit`` at ``times`` (s). Both are empty without a recording.
     - ``negated``: true if the clause negates the fluent.
+    - ``some_time``: true if the fluent needs to hold at one sample of its window only: the largest margin decides.
     """
 
     start: float | None = None
@@ -40,6 +41,7 @@ class Curve:
     reason: str = ""
     unit: str = ""
     negated: bool = False
+    some_time: bool = False
     times: tuple[float, ...] = ()
     margins: tuple[float, ...] = ()
 
@@ -50,6 +52,7 @@ def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margi
     The points extend beyond the window only if the margin does not depend on the start of the window.
     """
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
+    found = replace(found, some_time=constraint.some_time)
     selected = window(constraint, trace)
     if isinstance(selected, NoWindow) and constraint.some_time and selected.recorded is not None:
         selected = selected.recorded
@@ -84,9 +87,10 @@ def _extremes(margins: FloatArray) -> Iterator[int]:
 
 
 def _judged(found: Curve, times: FloatArray, margins: FloatArray) -> Iterator[int]:
-    """Yield the rows that decide the verdict: the window's first and last row, and that of the smallest margin."""
+    """Yield the rows that decide the verdict: the window's first and last row, and that of the deciding margin."""
     if found.start is None or found.end is None:
         return
     first, after = np.searchsorted(times, [found.start - DIGIT, found.end + DIGIT]).tolist()
     if first < after:
-        yield from (first, after - 1, first + int(margins[first:after].argmin()))
+        inside = margins[first:after]
+        yield from (first, after - 1, first + int(inside.argmax() if found.some_time else inside.argmin()))

@@ -102,7 +102,7 @@ def _curve(frame: _Frame, part: Mapping[str, Any]) -> str:
 
 
 def _decisive(frame: _Frame, part: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the point of the least margin within the window."""
+    """Yield the deciding point in the window: the smallest margin, or the largest one if one sample suffices."""
     if part["start"] is None:
         return
     inside = [
@@ -111,6 +111,7 @@ def _decisive(frame: _Frame, part: Mapping[str, Any]) -> Iterator[str]:
         if part["start"] - 1e-6 <= time <= part["end"] + 1e-6
     ]
     if inside:
-        value, time = min(inside)
+        # Earlier versions did not store which margin decides.
+        value, time = max(inside, key=lambda point: point[0]) if part.get("some_time", False) else min(inside)
         color = GOOD if (value >= 0) != part["negated"] else BAD
         yield f'<circle cx="{frame.x(time)}" cy="{frame.y(value)}" r="4" fill="{color}"/>'
