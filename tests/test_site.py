@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
@@ -60,6 +61,26 @@ def test_the_page_of_the_grammar_is_that_of_the_grammars() -> None:
     assert page == printed, "run .venv/bin/python docs/site/language.py"
     rows = {line.split("`")[1] for line in page.splitlines() if line.startswith("| `")}
     assert {"const", "permutations", "comp", "kgraph", "exists"} <= rows
+
+
+def test_the_page_of_time_shows_what_the_monitor_decides() -> None:
+    program = "import json, time_page; found = {}; print(json.dumps([time_page.page(found), found]))"
+    printed = subprocess.run(
+        [sys.executable, "-c", program], cwd=DOCS / "site", capture_output=True, text=True, check=True
+    ).stdout
+    page, pictures = json.loads(printed)
+    assert (DOCS / "time.md").read_text(encoding="utf-8") == page, "run .venv/bin/python docs/site/time_page.py"
+    kept = {path.name: path.read_text(encoding="utf-8") for path in (DOCS / "images" / "time").iterdir()}
+    assert kept == pictures
+
+
+def test_the_drawing_of_the_packages_shows_the_layers_that_are_enforced() -> None:
+    program = "import rooms_drawing as rooms; print(rooms.drawing(*rooms.rows_of_the_rules()), end='')"
+    printed = subprocess.run(
+        [sys.executable, "-c", program], cwd=DOCS / "site", capture_output=True, text=True, check=True
+    ).stdout
+    kept = (DOCS / "images" / "rooms.svg").read_text(encoding="utf-8")
+    assert kept == printed, "run .venv/bin/python docs/site/rooms_drawing.py"
 
 
 def test_each_page_has_its_place_in_the_table_of_contents() -> None:

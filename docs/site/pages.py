@@ -38,9 +38,10 @@ SECTIONS = {
         "diagnostics/README",
         "python-reference",
         "graph",
+        "files",
         "limits",
     ),
-    "Explanation": ("study", "language/design", "compatibility", "graph-differences"),
+    "Explanation": ("concepts", "time", "study", "language/design", "compatibility", "graph-differences"),
     "Project": ("performance", "reliability", "mutants", "ARCHITECTURE", "CONTRIBUTING", "SECURITY"),
 }
 """The table of contents; the examples are added from their folders."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.monitor.curve import POINTS, Curve, curve
 from robbdd_tools.monitor.time import After, During, Window
-from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.trace import EventStamp, Trace
 
 LONG = 5000
 
@@ -73,6 +75,18 @@ def test_a_long_curve_keeps_the_largest_margin_where_one_sample_suffices() -> No
     assert found.some_time
     assert len(found.times) < LONG
     assert (0.3, 2.0) in zip(found.times, found.margins, strict=True)
+
+
+@pytest.mark.parametrize(("some_time", "margins", "start"), [(False, [1, -1, 2], 0.3), (True, [0, 4, 3], 0.2)])
+def test_of_every_occurrence_the_deciding_one_has_its_window(
+    some_time: bool, margins: list[float], start: float
+) -> None:
+    trace = trace_of({"cube": still(8)})
+    trace = replace(trace, events=tuple(EventStamp("t:bell", time) for time in (0.2, 0.3, 0.4)))
+    values = np.array([5.0, 5.0, *margins, 5.0, 5.0, 5.0])
+    every = After("t:bell", 0.05, some_time=some_time, which="every")
+    found = curve(Curve(), every, trace, lambda rows: values[rows.first : rows.last + 1])
+    assert (found.start, found.some_time) == (start, some_time)
 
 
 def test_a_sample_without_a_number_is_no_gap_in_the_rest() -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.time import During, NoWindow, TimeConstraint, Window, occurrence_times, window
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -49,8 +49,10 @@ class Curve:
 def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margins) -> Curve:
     """Return the curve of a fluent, with its window and its points.
 
-    The points extend beyond the window only if the margin does not depend on the start of the window.
+    The points extend beyond the window only if the margin does not depend on the start of the window. The window of
+    *every* occurrence of an event is that of the occurrence with the smallest margin.
     """
+    constraint = _decisive(constraint, trace, margins)
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
     found = replace(found, some_time=constraint.some_time)
     selected = window(constraint, trace)
@@ -64,6 +66,24 @@ def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margi
     if whole is not None and inside is not None and np.array_equal(whole[rows], inside, equal_nan=True):
         return with_points(found, trace.times, whole)
     return with_points(found, times, inside)
+
+
+def _decisive(constraint: TimeConstraint, trace: Trace, margins: Margins) -> TimeConstraint:
+    """Return the time constraint of the occurrence that decides, if it names *every* occurrence."""
+    if isinstance(constraint, During) or constraint.which != "every":
+        return constraint
+    times = occurrence_times(constraint, trace)
+    if isinstance(times, NoWindow):
+        return constraint
+
+    def decisive_margin(one: TimeConstraint) -> float:
+        selected = window(one, trace)
+        inside = None if isinstance(selected, NoWindow) else margins(selected)
+        if inside is None:
+            return float("inf")
+        return float(inside.max() if constraint.some_time else inside.min())
+
+    return min((replace(constraint, number=number) for number in range(1, len(times) + 1)), key=decisive_margin)
 
 
 def with_points(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve:
