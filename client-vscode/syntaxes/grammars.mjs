@@ -247,6 +247,15 @@ const study = grammar("RobBDD Study", "source.robbdd.study", [
     captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
   },
   {
+    // A bound of a range with its unit; the name of the next setting is no unit.
+    match: String.raw`(?<![\p{L}\p{N}_-])(from|to)\s+(${NUMBER})[ \t]*(?!to\s|[\p{L}-]+\s*:|factor\s)([\p{L}%][\p{L}%/]*)`,
+    captures: {
+      1: { name: `${WORD}.factor.robbdd` },
+      2: { name: "constant.numeric.robbdd" },
+      3: { name: "keyword.other.unit.robbdd" },
+    },
+  },
+  {
     // The levels are names of catalog behaviours.
     begin: String.raw`(?<![\p{L}\p{N}_-])(factor)\s+(bhv)\s*(<[^<>]*>)\s*(:)\s*\{`,
     beginCaptures: {
@@ -260,9 +269,10 @@ const study = grammar("RobBDD Study", "source.robbdd.study", [
   },
   COMMON,
   declaration(DECLARE, "entity.name.type.study", "Study"),
-  labels(PROPERTY, "scenarios", "where", "first", "sample", "pairwise", "repeat", "seed", "batch", "timeout", "stop"),
+  labels(PROPERTY, "scenarios", "where", "first", "sample", "pairwise", "repeat", "seed", "batch", "timeout", "stop", "design"),
   phrases(`${WORD}.stop`, "width", "rate", "against"),
-  phrases(`${WORD}.factor`, "factor scene", "factor bhv", "factor", "scene", "bhv"),
+  phrases(`${WORD}.design`, "latin-hypercube", "sobol", "grid"),
+  phrases(`${WORD}.factor`, "factor scene", "factor bhv", "factor var", "factor", "scene", "bhv", "var", "from", "to"),
   phrases(DECLARE, "Study"),
 ]);
 

@@ -82,7 +82,7 @@ def test_levels_of_factors_are_combined_and_executed_with_the_same_seeds(tmp_pat
         ("where: part", "3:8 expected a condition, such as \"robot=panda\", not 'part'"),
         ("scenarios: { normal }", "3:14 expected a scenario or an execution, such as <normal>, not 'normal'"),
         ("scenarios: { <> }", "3:14 expected a scenario or an execution, such as <normal>"),
-        ("factor colour: { red }", "3:8 a factor is 'scene' or 'bhv': variables of scenarios vary in the model"),
+        ("factor colour: { red }", "3:8 a factor is 'scene', 'bhv' or 'var': other variables of scenarios vary"),
         ('factor scene: { "a" "b" }', "3:21 expected ',' or '}', not '\"b\"'"),
         ('factor scene: { "a", "a" }', "3:23 the level 'a' is given twice: remove one of them"),
         ("factor bhv <x>: { a } factor bhv <x>: { b }", "3:30 this factor is given twice: write all of its levels"),

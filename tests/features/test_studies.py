@@ -16,6 +16,7 @@ from robbdd_tools.features.folding import folds
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.outline import Item, outline
+from robbdd_tools.features.studies import study_name_at, uses_in_study
 from robbdd_tools.features.study_words import FORMS, WHOLE
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.study_text import SETTINGS, read_study
@@ -68,7 +69,14 @@ def test_the_settings_that_are_missing_are_proposed() -> None:
 @pytest.mark.parametrize(
     ("setting", "expected"),
     [
-        ("factor $0", ["scene", "bhv"]),
+        ("factor $0", ["scene", "bhv", "var"]),
+        ("factor var $0", ["goal", "part", "robot"]),
+        ("factor var <part>: from 1 to 2 factor var $0", ["goal", "robot"]),
+        ("factor var <part>: $0", ["from"]),
+        ("factor var <part>: from $0", []),
+        ("factor var <part>: from 0.7 m $0", ["to"]),
+        ("design: $0", ["latin-hypercube", "sobol", "grid"]),
+        ("design: sobol $0", []),
         ("factor scene $0", []),
         ("stop: $0", ["width", "rate"]),
         ("stop: rate 0.9 $0", ["against"]),
@@ -89,6 +97,8 @@ def test_values_of_settings_are_proposed(setting: str, expected: list[str]) -> N
 def test_a_setting_may_follow_each_complete_one() -> None:
     for setting in (
         "stop: width 0.1",
+        "factor var <part>: from 0.5 m to 0.7 m",
+        "design: grid 3",
         "stop: rate 0.9 against 0.8",
         "timeout: 3 seconds",
         "scenarios: { <a> }",
@@ -156,11 +166,31 @@ def test_each_setting_is_described_and_its_form_is_read() -> None:
         assert shown is not None
         assert shown.markdown.endswith(FORMS[name][1])
         for line in FORMS[name][0].splitlines():
-            values = {"<NAME>": "<a>", "<IMPL>": "<a>", ", …": "", "NAME": "a", "Q": "0.1", "P": "0.2", "W": "0.2"}
+            values = {
+                "<NAME>": "<a>",
+                "<IMPL>": "<a>",
+                "<VARIABLE>": "<a>",
+                "A to B": "0.1 to 0.2",
+                ", …": "",
+                "NAME": "a",
+                "Q": "0.1",
+                "P": "0.2",
+                "W": "0.2",
+            }
             for word, value in values.items():
                 line = line.replace(word, value)
-            line = line.replace(" N", " 3")
+            line = line.replace(" N", " 4")
             assert read_study(Document(URI, 0, f"{HEAD}{line} }}"))[1] == [], line
+
+
+def test_the_variable_of_a_range_leads_to_its_declaration_and_to_its_template() -> None:
+    text = f"{HEAD}factor var <fetch.part>: from 1 to 2\nfactor var <goal>: from 1 to 2 }}"
+    snapshot = project(text).snapshot()
+    for word, kind in (("part", "variable"), ("fetch", "scenario template"), ("goal", "variable")):
+        found = study_name_at(snapshot, URI, text.index(word) + 1)
+        assert found is not None
+        assert (text[found[0].start : found[0].end], str(found[1].kind)) == (word, kind)
+        assert found[0] in list(uses_in_study(snapshot, URI, found[1]))
 
 
 def test_a_level_that_is_called_like_a_setting_is_not_described_as_one() -> None:
@@ -173,14 +203,15 @@ def test_a_level_that_is_called_like_a_setting_is_not_described_as_one() -> None
 
 
 def test_the_outline_has_the_settings_and_factors() -> None:
-    text = f'{HEAD}repeat: 3\nfactor bhv <my-server>: {{ a }}\nfactor scene: {{ "a.scenex" }}\nseed: 1\n}}\n'
+    factors = 'factor bhv <my-server>: { a }\nfactor scene: { "a.scenex" }\nfactor var <part>: from 1 to 2'
+    text = f"{HEAD}repeat: 3\n{factors}\n}}\n"
     (study,) = outline(project(text).snapshot(), URI)
 
     def names(item: Item) -> list[tuple[str, str]]:
         return [(one.name, one.kind) for one in item.children]
 
     assert (study.name, study.kind) == ("s", "study")
-    assert names(study) == [("repeat", "repeat"), ("my-server", "factor"), ("scene", "factor"), ("seed", "seed")]
+    assert names(study) == [("repeat", "repeat"), ("my-server", "factor"), ("scene", "factor"), ("part", "factor")]
     assert all(study.extent.start <= one.span.start and one.span.end <= study.extent.end for one in study.children)
     assert outline(project("Study").snapshot(), URI) == []
 

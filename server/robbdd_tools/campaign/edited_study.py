@@ -17,7 +17,7 @@ from robbdd_tools.workbench.model import NO_SCENARIO, DraftFile, Model, read_ins
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.names.project import Project
-    from robbdd_tools.syntax.study_text import StudyText
+    from robbdd_tools.syntax.study_content import StudyText
 
 
 class EditedModels(StudyModels):

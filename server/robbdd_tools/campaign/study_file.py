@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -14,17 +14,23 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes, path_to_uri, read_text
+from robbdd_tools.campaign.designs import design_points
+from robbdd_tools.campaign.rates import StatisticsNotInstalled
 from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
+from robbdd_tools.campaign.study_ranges import form_faults, range_faults
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.run_policy import TIMEOUT
-from robbdd_tools.syntax.study_text import STUDY, Factor, StudyText, Word, read_study
+from robbdd_tools.syntax.study_content import STUDY, Factor, StudyText, Word
+from robbdd_tools.syntax.study_text import read_study
 from robbdd_tools.workbench.diagnostics import Finding, Place
 from robbdd_tools.workbench.model import Model, ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan, Selection
 
 if TYPE_CHECKING:
+    from robbdd_tools.campaign.study_ranges import Fault
     from robbdd_tools.catalog.executable import SceneInstance
+    from robbdd_tools.workbench.points import Points
 
 SUFFIX = f".{STUDY}"
 BATCH = 500
@@ -103,6 +109,7 @@ class Study:
             *(cell.words for cell in self.cells),
             *(cell.plan.digest for cell in self.cells),
             *(hashlib.sha256(load_bytes(self.path.parent / word.text)).hexdigest() for word in scenes),
+            *([] if self.cells[0].plan.selection.points is None else [repr(self.cells[0].plan.selection.points)]),
         ]
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
@@ -177,6 +184,10 @@ class StudyLoader:
             self._content.whole("seed"),
             default_seed=DEFAULT_SEED,
         )
+        self._report_all(form_faults(self._content))
+        self._report_all(range_faults((file.acceptance for file in self.model.runnable), self._content.ranges))
+        if self._content.ranges and not self.faults:
+            selection = replace(selection, points=self._points())
         if self._plan(replace(selection, names=()), self._content.where, "where") is None:
             if self._content.where is None:
                 return
@@ -189,6 +200,16 @@ class StudyLoader:
                 plan = self._plan(chosen, self._content.factors[0].levels[0] if levels else None, "factor")
                 if plan is not None:
                     yield Cell(levels, plan)
+
+    def _points(self) -> Points | None:
+        design = self._content.design
+        assert design is not None
+        seed = self._content.whole("seed")
+        try:
+            return design_points(design, self._content.ranges, DEFAULT_SEED if seed is None else seed)
+        except StatisticsNotInstalled:
+            self._report(design.span, f"the design '{design.kind}' needs SciPy: install robbdd-tools[statistics]")
+        return None
 
     def _model(self) -> Model | None:
         if not self._content.imports:
@@ -251,6 +272,10 @@ class StudyLoader:
             place = self._content.places.get(setting, Span(0, 0)) if word is None else word.span
             self._report(place, str(error).replace("--where", "where", 1))
             return None
+
+    def _report_all(self, faults: Iterable[Fault]) -> None:
+        for span, message in faults:
+            self._report(span, message)
 
     def _report(self, span: Span, message: str) -> None:
         fault = Diagnostic(self._document.uri, span, Severity.ERROR, "study", message)

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.campaign.value_bins import bins_of, in_order
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.report import value_word, variable_word
+
+if TYPE_CHECKING:
+    from robbdd_tools.campaign.value_bins import Bins
 
 HOLDS, UNKNOWN = "holds", "unknown"
 _LEVEL = "level."
@@ -55,7 +59,9 @@ def outcome_table(rows: Iterable[Row], by: Sequence[str] = ()) -> OutcomeTable:
     The first violated clause is the first in the order of the scenario, at which behave would stop. Without names, all
     factors with several levels are used. Raises ``NoSuchFactor``.
     """
-    executions = [(levels, outcome) for levels, outcome in _executions(rows)]
+    found_levels = list(_executions(rows))
+    bins = bins_of(levels for levels, _ in found_levels)
+    executions = [(_words(levels, bins), outcome) for levels, outcome in found_levels]
     factors = tuple(by) or _varied(levels for levels, _ in executions)
     for name in factors:
         _refuse_unknown(name, (levels for levels, _ in executions))
@@ -65,6 +71,9 @@ def outcome_table(rows: Iterable[Row], by: Sequence[str] = ()) -> OutcomeTable:
         cell = counts.setdefault(tuple(levels.get(name, "") for name in factors), {})
         cell[outcome] = cell.get(outcome, 0) + 1
         found[outcome] = None
+    for place in reversed([place for place, name in enumerate(factors) if _bins(name, bins)]):
+        order = in_order({cell[place] for cell in counts}, _bins(factors[place], bins))
+        counts = dict(sorted(counts.items(), key=lambda one, place=place, order=order: order.index(one[0][place])))
     violated = [outcome for outcome in found if outcome not in (HOLDS, UNKNOWN)]
     outcomes = (HOLDS, *violated, *(one for one in (UNKNOWN,) if one in found))
     table = tuple(tuple(cell.get(outcome, 0) for outcome in outcomes) for cell in counts.values())
@@ -75,22 +84,25 @@ def margins(rows: Iterable[Row], clause: str, factor: str) -> Margins:
     """Return the margins of a clause in executions whose clauses all hold; raises ``NoSuchFactor``."""
     found: dict[str, list[float]] = {}
     unit, known = "", dict[str, None]()
-    every: list[Mapping[str, str]] = []
+    judged: list[tuple[Mapping[str, Any], float | None]] = []
     for row in rows:
         known[row["clause"]] = None
         if row["clause"] == clause:
-            levels = _levels(row)
-            every.append(levels)
-            if row["scenario_verdict"] == HOLDS and row["margin"] is not None:
-                unit = row["unit"]
-                found.setdefault(levels.get(factor, ""), []).append(float(row["margin"]))
+            margin = row["margin"] if row["scenario_verdict"] == HOLDS else None
+            unit = unit if margin is None else row["unit"]
+            judged.append((_levels(row), None if margin is None else float(margin)))
+    bins = bins_of(levels for levels, _ in judged)
+    every = [_words(levels, bins) for levels, _ in judged]
+    for levels, (_, margin) in zip(every, judged, strict=True):
+        if margin is not None:
+            found.setdefault(levels.get(factor, ""), []).append(margin)
     if clause not in known:
         raise NoSuchFactor(f"the study has no clause '{clause}'; it has {', '.join(known)}")
     _refuse_unknown(factor, every)
-    return Margins(clause, factor, unit, found)
+    return Margins(clause, factor, unit, {level: found[level] for level in in_order(found, _bins(factor, bins))})
 
 
-def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, str], str]]:
+def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, Any], str]]:
     """Yield the levels of each execution, and what decided it."""
     for _, group in groupby(rows, key=lambda row: tuple(row[name] for name in _EXECUTION)):
         clauses = list(group)
@@ -99,9 +111,19 @@ def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, str], str]]:
         yield _levels(clauses[0]), verdict if first is None else str(first["clause"])
 
 
-def _levels(row: Row) -> Mapping[str, str]:
-    named = ((name.removeprefix(_LEVEL), value) for name, value in row.items() if name.startswith(_LEVEL))
-    return {variable_word(name): value_word(value) for name, value in named}
+def _levels(row: Row) -> Mapping[str, Any]:
+    return {name.removeprefix(_LEVEL): value for name, value in row.items() if name.startswith(_LEVEL)}
+
+
+def _words(levels: Mapping[str, Any], bins: Mapping[str, Bins]) -> Mapping[str, str]:
+    return {
+        variable_word(name): bins[name].word(value) if name in bins else value_word(value)
+        for name, value in levels.items()
+    }
+
+
+def _bins(factor: str, bins: Mapping[str, Bins]) -> Bins | None:
+    return next((found for name, found in bins.items() if variable_word(name) == factor), None)
 
 
 def _varied(executions: Iterable[Mapping[str, str]]) -> tuple[str, ...]:

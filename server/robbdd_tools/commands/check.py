@@ -10,7 +10,7 @@ from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_document, print_line
-from robbdd_tools.syntax.study_text import STUDY
+from robbdd_tools.syntax.study_content import STUDY
 from robbdd_tools.workbench.model import load_all
 from robbdd_tools.workbench.named_files import NotAModel, named_files
 

@@ -10,7 +10,7 @@ from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.syntax.study_text import STUDY
+from robbdd_tools.syntax.study_content import STUDY
 from robbdd_tools.workbench.named_files import NotAModel, named_files
 
 

@@ -20,7 +20,7 @@ from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.features.study_words import study_word_meaning
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project
-from robbdd_tools.syntax.study_text import STUDY
+from robbdd_tools.syntax.study_content import STUDY
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot

@@ -20,7 +20,7 @@ from robbdd_tools.features.studies import is_study
 from robbdd_tools.features.study_words import study_word_meaning
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.study_text import study_tokens
+from robbdd_tools.syntax.study_tokens import study_tokens
 from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:

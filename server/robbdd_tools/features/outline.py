@@ -15,7 +15,8 @@ from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.features.studies import is_study
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.study_text import STUDY, read_study
+from robbdd_tools.syntax.study_content import STUDY
+from robbdd_tools.syntax.study_text import read_study
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
@@ -109,6 +110,7 @@ def _of_study(document: Document) -> list[OutlinePiece]:
     for factor in content.factors:
         name, word = ("scene", factor.levels[0]) if factor.implementation is None else ("", factor.implementation)
         settings.append((name or word.text, "factor", word.span))
+    settings += [(one.variable.text, "factor", one.variable.span) for one in content.ranges]
     parts = tuple(Item(name, kind, span, span, ()) for name, kind, span in sorted(settings, key=lambda one: one[2]))
     extent = Span(content.head.start, max([content.head.end, len(document.text.rstrip())]))
     return [OutlinePiece(0, (Item(content.name, STUDY, content.head, extent, parts),))]

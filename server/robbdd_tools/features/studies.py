@@ -11,13 +11,14 @@ from robbdd_tools.features.executions import executions_of
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.study_text import STUDY, read_study
+from robbdd_tools.syntax.study_content import STUDY
+from robbdd_tools.syntax.study_text import read_study
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.syntax.study_text import Word
+    from robbdd_tools.syntax.study_content import Word
 
 _LOCAL = re.compile(r"[^:/#<>]*$")
 """The local name at the end of a CURIE or an IRI."""
@@ -50,11 +51,20 @@ def scenarios_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]
 def implementations_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
     """Return the implementations of behaviours for which a study may name others, by local name."""
     found: dict[str, Definition] = {}
-    for model in _models(snapshot, uri):
-        for file in snapshot.closure(model):
-            for definition in file.definitions.values():
-                if definition.kind is SymbolKind.IMPLEMENTATION:
-                    found.setdefault(definition.symbol.name, definition)
+    for definition in _definitions(snapshot, uri, SymbolKind.IMPLEMENTATION):
+        found.setdefault(definition.symbol.name, definition)
+    return found
+
+
+def variables_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
+    """Return the variables to which a study may give a range, by local name and with their templates (``pick.height``).
+
+    A local name that several templates have stands for all of them, and has the definition of the first one.
+    """
+    found: dict[str, Definition] = {}
+    for definition in _definitions(snapshot, uri, SymbolKind.VARIABLE):
+        found.setdefault(definition.symbol.name, definition)
+        found.setdefault(definition.symbol.path, definition)
     return found
 
 
@@ -83,6 +93,20 @@ def _names(snapshot: Snapshot, uri: str) -> Iterator[tuple[Span, Definition]]:
             known = known_in(snapshot, uri)
             for word in words:
                 yield from _target(document, word, known)
+    if content.ranges:
+        variables = variables_of_study(snapshot, uri)
+        templates = {one.symbol.name: one for one in _definitions(snapshot, uri, SymbolKind.TEMPLATE)}
+        for one in content.ranges:
+            yield from _target(document, one.variable, variables)
+            yield from _template(document, one.variable, templates)
+
+
+def _template(document: Document, word: Word, known: Mapping[str, Definition]) -> Iterator[tuple[Span, Definition]]:
+    """Yield the template in the name of a variable, if it has one."""
+    template, dot, _ = word.text.rpartition(".")
+    if dot and template in known:
+        start = document.text.index(word.text, word.span.start)
+        yield Span(start, start + len(template)), known[template]
 
 
 def _target(document: Document, word: Word, known: Mapping[str, Definition]) -> Iterator[tuple[Span, Definition]]:
@@ -92,12 +116,19 @@ def _target(document: Document, word: Word, known: Mapping[str, Definition]) -> 
     if local is None or target is None or (":" in word.text and not _is_of(word.text, target)):
         return
     end = document.text.index(word.text, word.span.start) + len(word.text)
-    yield Span(end - len(local[0]), end), target
+    yield Span(end - len(local[0].rpartition(".")[2]), end), target
 
 
 def _is_of(written: str, target: Definition) -> bool:
     """Return whether a CURIE or an IRI may be that of a definition. The prefixes of the graph are not known here."""
     return target.iri == written or "/" not in written
+
+
+def _definitions(snapshot: Snapshot, uri: str, kind: SymbolKind) -> Iterator[Definition]:
+    """Yield the definitions of a kind in the models of a study and in their imports."""
+    for model in _models(snapshot, uri):
+        for file in snapshot.closure(model):
+            yield from (one for one in file.definitions.values() if one.kind is kind)
 
 
 def _models(snapshot: Snapshot, uri: str) -> Iterator[str]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.quoted_completion import files_in_quotes
-from robbdd_tools.features.studies import implementations_of_study, scenarios_of_study
+from robbdd_tools.features.studies import implementations_of_study, scenarios_of_study, variables_of_study
 from robbdd_tools.features.study_words import WHOLE
-from robbdd_tools.syntax.study_text import REDUCING, SETTINGS, Token, study_tokens
+from robbdd_tools.syntax.study_content import DESIGNS
+from robbdd_tools.syntax.study_text import REDUCING, SETTINGS
+from robbdd_tools.syntax.study_tokens import Token, study_tokens
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
@@ -29,9 +32,10 @@ _FORMS = {
     "factor": "factor ",
 }
 """The text that a proposed setting inserts."""
-_SCENARIO, _IMPLEMENTATION, _BEHAVIOUR, _MODEL, _SCENE = (
+_SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
     "a scenario",
     "an implementation",
+    "a variable",
     "a behaviour",
     "a model",
     "a scene",
@@ -75,6 +79,10 @@ def complete_study(snapshot: Snapshot, uri: str, offset: int) -> list[Completion
         found += _names(document, cursor, scenarios_of_study(snapshot, uri), _listed(cursor.tokens))
     if _IMPLEMENTATION in wanted:
         found += _names(document, cursor, implementations_of_study(snapshot, uri), [])
+    if _VARIABLE in wanted:
+        known = variables_of_study(snapshot, uri)
+        local = {name: one for name, one in known.items() if "." not in name}
+        found += _names(document, cursor, local, _ranged(cursor.tokens))
     return found
 
 
@@ -105,11 +113,15 @@ def _expected(tokens: Sequence[Token]) -> Sequence[str]:
         return _settings(inside) if len(inside) == 2 else ()
     setting, given = inside[begun[-1]].text, [one.text for one in inside[begun[-1] + 1 :]]
     kinds = [one.kind for one in inside[begun[-1] + 1 :]]
+    if setting == "factor" and given[:1] == ["var"]:
+        return _range_value(inside, given, kinds)
     if setting in ("scenarios", "factor"):
         return _settings(inside) if given[-1:] == ["}"] else _list_value(setting, given)
     if setting == "stop":
         return _settings(inside) if kinds[-1:] == ["number"] and given[-2] != "rate" else _stop_value(given)
-    complete = len(given) == (3 if setting == "timeout" else 2)
+    if setting == "design" and given == [":"]:
+        return DESIGNS
+    complete = len(given) == (3 if setting in ("timeout", "design") else 2)
     if complete:
         return _settings(inside)
     return ("seconds",) if setting == "timeout" and kinds[-1:] == ["number"] else ()
@@ -133,10 +145,21 @@ def _list_value(setting: str, given: Sequence[str]) -> Sequence[str]:
     if setting == "scenarios":
         return (_SCENARIO,) if opened else ()
     if given in ([], ["bhv"]):
-        return ("scene", "bhv") if not given else (_IMPLEMENTATION,)
+        return ("scene", "bhv", "var") if not given else (_IMPLEMENTATION,)
     if not opened:
         return ()
     return (_SCENE,) if given[0] == "scene" else (_BEHAVIOUR,)
+
+
+def _range_value(inside: Sequence[Token], given: Sequence[str], kinds: Sequence[str]) -> Sequence[str]:
+    """Return what may follow the words of a range. Its bounds may have units."""
+    if len(given) == 1:
+        return (_VARIABLE,)
+    if kinds[1:] == ["reference", "sign"]:
+        return ("from",)
+    if "from" in given and "to" not in given:
+        return ("to",) if "number" in kinds else ()
+    return _settings(inside) if "to" in given and kinds.count("number") == 2 else ()
 
 
 def _stop_value(given: Sequence[str]) -> Sequence[str]:
@@ -149,6 +172,12 @@ def _listed(tokens: Sequence[Token]) -> list[str]:
     """Return the names in the list that is open at the end of some tokens."""
     opened = max((place for place, one in enumerate(tokens) if one.text == "{"), default=0)
     return [one.text.strip("<> ") for one in tokens[opened:] if one.kind in ("reference", "name")]
+
+
+def _ranged(tokens: Sequence[Token]) -> list[str]:
+    """Return the variables that have a range."""
+    named = pairwise(tokens)
+    return [name.text.strip("<> ") for word, name in named if word.text == "var" and name.kind == "reference"]
 
 
 def _words(cursor: _Cursor, words: Sequence[str]) -> Iterator[Completion]:

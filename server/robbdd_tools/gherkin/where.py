@@ -84,7 +84,7 @@ def parse_where(text: str) -> Expression:
 def check_where(expression: Expression, model: AcceptanceModel, variants: Sequence[Variant]) -> None:
     """Raise ``WhereError`` for a variable that no variant has."""
     every = [(variant, variable) for variant in variants for variable in variant.variation.variables]
-    names = {name for variant, variable in every for name in _names(model, variant, variable)}
+    names = {name for variant, variable in every for name in variable_names(model, variant, variable)}
     for comparison in _comparisons(expression):
         if comparison.variable not in names:
             known = ", ".join(dict.fromkeys(variable_name(variable) for _, variable in every)) or "none"
@@ -96,7 +96,7 @@ def condition(expression: Expression, model: AcceptanceModel, variant: Variant) 
     columns = {
         name: index
         for index, variable in enumerate(variant.variation.variables)
-        for name in _names(model, variant, variable)
+        for name in variable_names(model, variant, variable)
     }
     return _test(expression, model, columns)
 
@@ -153,7 +153,8 @@ def _comparisons(expression: Expression) -> Iterator[Comparison]:
             yield from _comparisons(operand)
 
 
-def _names(model: AcceptanceModel, variant: Variant, variable: Iri) -> tuple[str, ...]:
+def variable_names(model: AcceptanceModel, variant: Variant, variable: Iri) -> tuple[str, ...]:
+    """Return the names by which users refer to a variable: alone, with its template, and as a CURIE."""
     local = variable_name(variable)
     return local, f"{model.curie(variant.template.iri).rsplit(':', 1)[-1]}.{local}", model.curie(variable)
 

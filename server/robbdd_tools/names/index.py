@@ -16,7 +16,8 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import Placed
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
 from robbdd_tools.syntax.split import Chunk, resplit, split
-from robbdd_tools.syntax.study_text import STUDY, read_study
+from robbdd_tools.syntax.study_content import STUDY
+from robbdd_tools.syntax.study_text import read_study
 
 if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Symbol

@@ -10,6 +10,8 @@
             | "stop" ":" ( "width" number | "rate" number "against" number )
             | "factor" "scene" ":" "{" text { "," text } "}"
             | "factor" "bhv" "<" name ">" ":" "{" name { "," name } "}"
+            | "factor" "var" "<" name ">" ":" "from" number [ unit ] "to" number [ unit ]
+            | "design" ":" ( "latin-hypercube" | "sobol" | "grid" ) whole number
 
 The reader continues after an error with the next setting, so that all errors of a file are found at once.
 """
@@ -17,78 +19,26 @@ The reader continues after an error with the next setting, so that all errors of
 from __future__ import annotations
 
 import difflib
-import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
-
-_TOKEN = re.compile(
-    r"""(?P<space>\s+|//[^\n\r]*)|(?P<text>"[^"\n\r]*"|'[^'\n\r]*')|(?P<reference><[^<>\n\r]*>)"""
-    r"""|(?P<number>-?\d+(?:\.\d+)?(?![\w.]))|(?P<name>[^\W\d][\w-]*)|(?P<sign>[{}:,])|(?P<other>[^\s{}:,<>"']+|.)"""
+from robbdd_tools.syntax.study_content import (
+    DESIGNS,
+    MOST_BATCH,
+    MOST_POINTS,
+    MOST_REPETITIONS,
+    MOST_SECONDS,
+    MOST_SEED,
+    SOBOL,
+    Design,
+    Factor,
+    Range,
+    StudyText,
+    Word,
 )
-STUDY = "study"
-"""The ending of the names of studies, without the dot."""
-MOST_REPETITIONS = 1_000_000
-"""Limit of ``repeat``, ``first`` and ``sample``."""
-MOST_BATCH = 10_000
-"""Limit of ``batch``: the scenarios of a batch are in memory."""
-MOST_SEED = 2**63 - 1
-"""Limit of a seed: the results are stored in 64 bits."""
-MOST_SECONDS = 1_000_000
-"""Limit of ``timeout`` in s."""
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """A value of a study, and its place in the text."""
-
-    text: str
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class Factor:
-    """A factor of a study. ``implementation`` is the implementation of a behaviour; ``None`` for scene instances."""
-
-    implementation: Word | None
-    levels: tuple[Word, ...]
-
-
-@dataclass(slots=True)
-class StudyText:
-    """The contents of a ``.study`` file. ``numbers`` has the settings with a number by their names."""
-
-    imports: list[Word] = field(default_factory=list[Word])
-    name: str = ""
-    head: Span = field(default_factory=lambda: Span(0, 0))
-    """The place of the name; empty if there is none."""
-    scenarios: tuple[Word, ...] = ()
-    where: Word | None = None
-    factors: list[Factor] = field(default_factory=list[Factor])
-    numbers: dict[str, float] = field(default_factory=dict[str, float])
-    places: dict[str, Span] = field(default_factory=dict[str, Span])
-    """The places of the names of settings."""
-
-    @property
-    def scenes(self) -> tuple[Word, ...]:
-        """The files whose scene instances are levels of a factor."""
-        return tuple(level for one in self.factors if one.implementation is None for level in one.levels)
-
-    def whole(self, name: str) -> int | None:
-        """Return a setting that is a whole number; ``None`` if it is missing."""
-        found = self.numbers.get(name)
-        return None if found is None else int(found)
-
-
-class Token(NamedTuple):
-    """A token of a study: white space and comments are left out, and the last one has the kind ``end``."""
-
-    kind: str
-    text: str
-    span: Span
+from robbdd_tools.syntax.study_tokens import Token, study_tokens
 
 
 class _Unexpected(Exception):
@@ -117,7 +67,7 @@ _NUMBERS: Mapping[str, _NumberRange] = {
 }
 REDUCING = ("first", "sample", "pairwise")
 """Settings of which a study has at most one."""
-SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "factor")
+SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "design", "factor")
 """The words that begin a setting."""
 
 
@@ -169,6 +119,7 @@ class _Reader:
             "where": self._where,
             "factor": self._factor,
             "stop": self._stop,
+            "design": self._design,
         }
         if word.text not in SETTINGS or word.kind != "name":
             raise _Unexpected(word, f"'{word.text}' is not a setting of a study{_meant(word.text)}")
@@ -206,8 +157,56 @@ class _Reader:
             self._expect(":")
             levels = self._list(lambda: _word(self._kind("name", "the name of a catalog behaviour")))
             self._add(kind, Factor(implementation, levels))
+        elif kind.text == "var":
+            self._range()
         else:
-            raise _Unexpected(kind, "a factor is 'scene' or 'bhv': variables of scenarios vary in the model")
+            message = "a factor is 'scene', 'bhv' or 'var': other variables of scenarios vary in the model"
+            raise _Unexpected(kind, message)
+
+    def _range(self) -> None:
+        variable = self._reference("a variable of scenarios, such as <height>")
+        self._expect(":")
+        first = self._expect("from")
+        low, low_unit = self._quantity()
+        self._expect("to")
+        high, high_unit = self._quantity()
+        span = Span(first.span.start, self._tokens[self._next - 1].span.end)
+        place = Token("", "", span)
+        if low >= high:
+            raise _Unexpected(place, f"a range goes from its lower to its upper bound, not from {low:g} to {high:g}")
+        if low_unit and low_unit != high_unit:
+            raise _Unexpected(place, f"both bounds have one unit: write '{low_unit}' after both of them")
+        if any(one.variable.text == variable.text for one in self._found.ranges):
+            raise _Unexpected(Token("", "", variable.span), "this variable has a range: remove one of them")
+        self._found.ranges.append(Range(variable, low, high, high_unit, span))
+
+    def _quantity(self) -> tuple[float, str]:
+        """Read a number with its unit, if it has one; the name of the next setting is no unit."""
+        number = self._kind("number", "a number")
+        unit = ""
+        following = self._tokens[min(self._next + 1, len(self._tokens) - 1)]
+        begins = self._peek().text in ("to", *SETTINGS) or following.text == ":"
+        if self._peek().kind in ("name", "other") and not begins:
+            last = self._take()
+            unit = last.text
+            while self._peek().kind in ("name", "other") and self._peek().span.start == last.span.end:
+                last = self._take()
+                unit += last.text
+        return float(number.text), unit
+
+    def _design(self) -> None:
+        self._expect(":")
+        kind = self._take()
+        if kind.text not in DESIGNS:
+            raise _Unexpected(kind, f"a design is {', '.join(DESIGNS)}, such as 'latin-hypercube 20'")
+        token = self._kind("number", f"a whole number from 2 to {MOST_POINTS}")
+        if "." in token.text or not 2 <= int(token.text) <= MOST_POINTS:
+            raise _Unexpected(token, f"expected a whole number from 2 to {MOST_POINTS}, not {token.text}")
+        size = int(token.text)
+        if kind.text == SOBOL and size & (size - 1):
+            below = 1 << (size.bit_length() - 1)
+            raise _Unexpected(token, f"a Sobol design has a power of two of points: write {below} or {2 * below}")
+        self._found.design = Design(kind.text, size, Span(kind.span.start, token.span.end))
 
     def _add(self, place: Token, factor: Factor) -> None:
         names = [level.text for level in factor.levels]
@@ -279,12 +278,12 @@ class _Reader:
             raise _Unexpected(self._peek(), f"expected {what}, not {_shown(self._peek())}")
         return self._take()
 
-    def _expect(self, text: str, what: str = "") -> None:
+    def _expect(self, text: str, what: str = "") -> Token:
         token = self._peek()
         if token.text != text or token.kind in ("text", "reference"):
             expected = what or f"'{text}'"
             raise _Unexpected(token, f"expected {expected}, not {_shown(token)}")
-        self._take()
+        return self._take()
 
     def _peek(self) -> Token:
         return self._tokens[self._next]
@@ -310,14 +309,6 @@ class _Reader:
 
     def _report(self, error: _Unexpected) -> None:
         self.faults.append(Diagnostic(self._uri, error.token.span, Severity.ERROR, "syntax", str(error)))
-
-
-def study_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a study."""
-    for match in _TOKEN.finditer(text):
-        if match.lastgroup != "space":
-            yield Token(match.lastgroup or "other", match.group(), Span(*match.span()))
-    yield Token("end", "", Span(len(text), len(text)))
 
 
 def _word(token: Token) -> Word:

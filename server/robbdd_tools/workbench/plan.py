@@ -13,6 +13,7 @@ from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all, specs_of
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
+from robbdd_tools.workbench.points import with_points
 from robbdd_tools.workbench.scene_choice import NOTHING_TO_PLACE, SceneChoiceError, in_instances, uses_instances
 from robbdd_tools.workbench.substitution import refuse_unknown, substitute
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.judged_text import JudgedTexts
     from robbdd_tools.workbench.model import Model, ModelFile
+    from robbdd_tools.workbench.points import Points
     from robbdd_tools.workbench.run import Run
     from robbdd_tools.workbench.time_estimate import TimeEstimate
 
@@ -53,6 +55,7 @@ class Selection:
     - ``default_substitutions``: like ``substitutions``, but implementations that the models lack are ignored.
     - ``instances``: scene instances. A scenario without an execution runs in the one that instantiates its scene.
     - ``default_instances``: like ``instances``, but scenarios whose scene has none are placed as without.
+    - ``points``: values of variables that replace those of the models.
     """
 
     names: Sequence[str] = ()
@@ -68,6 +71,7 @@ class Selection:
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
     instances: Sequence[SceneInstance] = ()
     default_instances: Sequence[SceneInstance] = ()
+    points: Points | None = None
 
     def wanted(self) -> Wanted:
         """Return the part of the selection that concerns the values of scenarios."""
@@ -250,7 +254,8 @@ class _Planner:
 
     def _request(self, file: ModelFile) -> RunRequest | None:
         selection = self._selection
-        model = substitute(file.acceptance, {**selection.default_substitutions, **selection.substitutions})
+        model = with_points(file.acceptance, selection.points)
+        model = substitute(model, {**selection.default_substitutions, **selection.substitutions})
         executions = tuple(one for one in self._executions(model) if one.iri not in self._taken)
         model = self._in_instances(model, executions)
         executed = {execution.variant for execution in executions}

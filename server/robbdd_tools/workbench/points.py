@@ -1,0 +1,87 @@
+"""Give variables of scenarios other values than those of the model: the points of an experimental design."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.gherkin.variations import bindings, count
+from robbdd_tools.gherkin.where import variable_names
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Product, Table, Variant
+
+MOST_SCENARIOS = 1_000_000
+"""Limit of the scenarios of a variant whose values are points: they are in memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Values of variables for scenarios.
+
+    - ``variables``: their names as in ``--where``: alone, with their template, or as a CURIE.
+    - ``rows``: the values of one point each, in the order of the variables.
+    - ``levels``: of a grid, the values of each variable, whose combinations are the points; then ``rows`` is empty.
+    """
+
+    variables: tuple[str, ...]
+    rows: tuple[tuple[float, ...], ...] = ()
+    levels: tuple[tuple[float, ...], ...] = ()
+
+
+def with_points(model: AcceptanceModel, points: Points | None) -> AcceptanceModel:
+    """Return a model in which the points replace the values of the named variables.
+
+    Each combination of the other variables' values is executed at each point. A variant that has only some of the
+    variables has these values of the points; one that has none of them is unchanged. Raises ``SelectionError``.
+    """
+    if points is None:
+        return model
+    stories = tuple(
+        replace(story, variants=tuple(_at_points(model, variant, points) for variant in story.variants))
+        for story in model.stories
+    )
+    return replace(model, stories=stories)
+
+
+def _at_points(model: AcceptanceModel, variant: Variant, points: Points) -> Variant:
+    columns = {
+        place: points.variables.index(names.pop())
+        for place, variable in enumerate(variant.variation.variables)
+        if (names := set(variable_names(model, variant, variable)) & set(points.variables))
+    }
+    if not columns:
+        return variant
+    variation = variant.variation
+    if points.levels and isinstance(variation, Product):
+        choices = tuple(
+            points.levels[columns[place]] if place in columns else found
+            for place, found in enumerate(variation.choices)
+        )
+        return replace(variant, variation=replace(variation, choices=choices))
+    others = tuple(one for place, one in enumerate(variation.variables) if place not in columns)
+    rows = list(dict.fromkeys(_projected(points, tuple(columns.values()))))
+    if count(variation) * len(rows) > MOST_SCENARIOS:
+        name = model.curie(variant.iri)
+        raise SelectionError(
+            f"{name} has more than {MOST_SCENARIOS} scenarios at {len(rows)} points: take fewer points"
+        )
+    return replace(variant, variation=Table(variation.variables, tuple(_rows(variation, others, columns, rows))))
+
+
+def _projected(points: Points, columns: Sequence[int]) -> Iterator[tuple[float, ...]]:
+    """Yield the values of some of the variables."""
+    if points.levels:
+        yield from product(*(points.levels[column] for column in columns))
+    for row in points.rows:
+        yield tuple(row[column] for column in columns)
+
+
+def _rows(
+    variation: Product | Table, others: Sequence[Iri], columns: Mapping[int, int], rows: Iterable[tuple[float, ...]]
+) -> Iterator[tuple[Cell, ...]]:
+    kept = dict.fromkeys(tuple(values[name] for name in others) for values in bindings(variation))
+    for former in kept:
+        for row in rows:
+            values, found = iter(former), dict(zip(columns, row, strict=True))
+            yield tuple(found[place] if place in found else next(values) for place in range(len(variation.variables)))
