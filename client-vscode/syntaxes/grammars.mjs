@@ -248,7 +248,7 @@ const study = grammar("RobBDD Study", "source.robbdd.study", [
   },
   {
     // A bound of a range with its unit; the name of the next setting is no unit.
-    match: String.raw`(?<![\p{L}\p{N}_-])(from|to)\s+(${NUMBER})[ \t]*(?!to\s|[\p{L}-]+\s*:|factor\s)([\p{L}%][\p{L}%/]*)`,
+    match: String.raw`(?<![\p{L}\p{N}_-])(from|to)\s+${NUMBER}[ \t]*(?!to\s|[\p{L}-]+\s*:|factor\s)([\p{L}%][\p{L}%/]*)`,
     captures: {
       1: { name: `${WORD}.factor.robbdd` },
       2: { name: "constant.numeric.robbdd" },
