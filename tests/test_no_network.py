@@ -67,6 +67,7 @@ COMMANDS = (
     "study outcomes one.study --store studies",
     "study margins one.study --clause at-goal --by thing --store studies",
     "study plan --width 0.05",
+    "mutate pickplace.bdd --first 1 --fault no-grip",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",

@@ -42,6 +42,7 @@ COMMANDS = (
     "study outcomes one.study --plot out/outcomes.svg --store out/studies",
     "study margins one.study --clause at-goal --by thing --store out/studies",
     "study plan --width 0.05",
+    "mutate pickplace.bdd --first 1 --fault no-grip --json out/faults.json",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
     "new out/bench",

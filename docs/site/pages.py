@@ -24,6 +24,7 @@ SECTIONS = {
             "logs",
             "campaigns",
             "comparing",
+            "mutate",
             "continuous-integration",
             "editors",
             "debugging",

@@ -22,6 +22,7 @@ from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
 from robbdd_tools.commands.lost_output import output_may_be_lost
+from robbdd_tools.commands.mutate_arguments import add_mutate
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run_arguments import (
     allow_run,
@@ -135,6 +136,9 @@ def argument_parser() -> argparse.ArgumentParser:
     stored = add_commands_of_runs(commands)
     studies = add_study(commands.add_parser("study", help="execute the combinations of a .study file many times"))
 
+    mutated = commands.add_parser("mutate", help="give the simulated robots faults, and show which clauses notice them")
+    add_mutate(mutated)
+
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", nargs="?", type=Path)
     text = "show this arm alone, and what was found in its MJCF or URDF file; or an arm of the catalog"
@@ -176,8 +180,8 @@ def argument_parser() -> argparse.ArgumentParser:
     completion = commands.add_parser("completion", help="print a script that completes robbdd's arguments in a shell")
     completion.add_argument("shell", choices=SHELLS)
     completion.set_defaults(command=_completion)
-    _allow_refusal(run, *stored, *studies, view, dap)
-    _allow_hosts(check, graph, gherkin, run, imported, query)
+    _allow_refusal(run, *stored, *studies, mutated, view, dap)
+    _allow_hosts(check, graph, gherkin, run, mutated, imported, query)
     return parser
 
 

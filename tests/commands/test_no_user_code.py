@@ -98,6 +98,13 @@ def test_what_does_without_code_of_users_is_run(folder: Path) -> None:
     assert not (folder.parent / "ran").exists()
 
 
+def test_no_code_of_users_is_executed_with_faults(folder: Path) -> None:
+    done = robbdd(folder, "mutate pickplace.bddx --no-user-code --fault no-grip")
+    assert done.returncode == 2
+    assert "judges with the Python code policies:apart" in done.stderr
+    assert not (folder.parent / "ran").exists()
+
+
 def test_a_study_executes_no_code_of_users(folder: Path) -> None:
     study = 'import "pickplace.bddx" Study one { first: 1 }'
     (folder / "one.study").write_text(study, encoding="utf-8")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
 from robbdd_tools.world.errors import BehaviourError, SceneError
 from robbdd_tools.world.pick_place import PickPlace
@@ -16,6 +17,7 @@ from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 if TYPE_CHECKING:
     from robbdd_tools.agent.behaviour_calls import Call
     from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.catalog.robot_faults import RobotFault
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.world.simulation import Simulation
 
@@ -43,12 +45,20 @@ class BehaviourExecutors:
         self._emit = emit
         self._note_choice = note_choice
         self._controllers: dict[str, PickPlace] = {}
+        self._fault: RobotFault | None = None
         self._draw = np.random.default_rng((simulation.world.seed, PLACES))
 
     @property
     def is_users(self) -> bool:
         """Whether users' code executes the behaviours."""
         return self._implementation is not None and self._implementation.kind == "python"
+
+    def introduce(self, fault: RobotFault, calls: Iterable[Call]) -> None:
+        """Let the robots have a fault from now on. Raises ``SceneError`` if it cannot occur in some behaviour."""
+        for call in calls:
+            with_swapped_element(call, fault, self._simulation)
+        self._fault = fault
+        self._simulation.introduce(fault)
 
     def attempt(self, call: Call) -> Generator[None, None, BehaviourError | None]:
         """Execute a behaviour, one control tick for each step of the iterator.
@@ -86,9 +96,12 @@ class BehaviourExecutors:
 
     def _behaviour(self, call: Call) -> Iterator[None]:
         controller = self.controller(call.element("agent"))
+        if self._fault is not None:
+            call = with_swapped_element(call, self._fault, self._simulation)
         if self._implementation is not None and self.is_users:
             world = AgentWorld(self._simulation, call.element("agent"), self._emit)
-            return run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
+            steps = run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
+            return steps if self._simulation.pace == 1.0 else _at_pace(steps, self._simulation.pace)
         match call.behaviour:
             case "pick":
                 return controller.pick(call.element("object"))
@@ -110,3 +123,17 @@ class BehaviourExecutors:
             return places
         order: list[int] = self._draw.permutation(len(places)).tolist()
         return tuple(places[index] for index in order)
+
+
+def _at_pace(steps: Iterator[None], pace: float) -> Iterator[None]:
+    """Execute the steps of users' code with a multiple of their pace: twice in a tick, or every second tick."""
+    due = 0.0
+    while True:
+        due += pace
+        while due >= 1.0:
+            due -= 1.0
+            try:
+                next(steps)
+            except StopIteration:
+                return
+        yield

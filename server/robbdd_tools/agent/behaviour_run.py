@@ -98,6 +98,8 @@ class BehaviourRun:
         self.settings = read_back(self.simulation, spec.scene)
         self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
         self._settle()
+        if spec.fault is not None:
+            self._executors.introduce(spec.fault, self._calls)
         self._script = self._scenario()
         self.wall = perf_counter() - began
 

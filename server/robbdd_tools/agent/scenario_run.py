@@ -19,7 +19,7 @@ from robbdd_tools.judging.decisions import decide, is_closed, no_step, occurred
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
-from robbdd_tools.judging.scenario_clauses import iteration_of, judged_clause, stated_by_step
+from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, judged_clause, stated_by_step
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
@@ -34,6 +34,7 @@ from robbdd_tools.protocol.messages import (
     judged,
 )
 from robbdd_tools.protocol.run_folder import curves_file, trace_file
+from robbdd_tools.protocol.specs import PROBE
 from robbdd_tools.protocol.time_words import WORDING
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import write_trace
@@ -86,6 +87,8 @@ class ScenarioRun:
             for line, step in steps.items()
             if isinstance(step, Fluent | Text | Junction)
         }
+        self._probes = {clause.line: clause_of(clause, spec) for clause in spec.clauses if clause.role == PROBE}
+        self._clauses |= self._probes
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
         self._keep = keep
@@ -203,11 +206,11 @@ class ScenarioRun:
     def finish(self) -> None:
         """Report the scenario as finished.
 
-        Before, texts that have a policy are judged, and open clauses are reported as unknown.
+        Before, texts that have a policy and probes are judged, and open clauses are reported as unknown.
         """
         for line, sentence in list(self._open.items()):
-            # behave has no step for such a text.
-            if line in self._texts and isinstance(self._clauses[line], Fluent):
+            # behave has no step for such a text, nor for a probe.
+            if line in self._probes or (line in self._texts and isinstance(self._clauses[line], Fluent)):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
             left = unknown(no_step(sentence), Cause.NO_STEP)

@@ -19,6 +19,7 @@ from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.writing import replacing
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import SceneInstance
+from robbdd_tools.catalog.robot_faults import RobotFault
 from robbdd_tools.protocol.clauses import Statement, to_plain
 from robbdd_tools.protocol.clauses import from_plain as statement_from_plain
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
@@ -83,7 +84,7 @@ def read_scenario(
     scene = entry.pop("scene")
     clauses = entry.pop("clauses")
     execution, tree = entry.pop("execution", None), entry.pop("tree", None)
-    instance = entry.pop("chosen_instance", None)
+    instance, fault = entry.pop("chosen_instance", None), entry.pop("fault", None)
     return ScenarioSpec(
         scene=SceneSpec(
             tuple(scene["objects"]),
@@ -100,6 +101,7 @@ def read_scenario(
         execution=None if execution is None else executions[execution],
         tree=None if tree is None else trees[tree],
         chosen_instance=None if instance is None else instances[instance],
+        fault=None if fault is None else from_plain(RobotFault, fault),
         **entry,
     )
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import ChosenScene, Implementation, SceneInstance, Substitution
+from robbdd_tools.catalog.robot_faults import RobotFault
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.protocol.clauses import Statement
 
@@ -66,9 +67,15 @@ class ExecutionSpec:
     timeout: float | None = None
 
 
+PROBE = "probe"
+"""Role of a clause that the model does not have. It is measured at the end of an execution, and decides no verdict."""
+
+
 @dataclass(frozen=True, slots=True)
 class ClauseSpec:
     """One clause of one scenario: the feature line of its step, the IRI of the judged clause, and its role.
+
+    A clause of the role ``PROBE`` has a negative number instead of a line.
 
     - ``statement``: the content of the clause. It is missing in a run that an earlier version stored; then ``sentence``
       is parsed.
@@ -101,6 +108,7 @@ class ScenarioSpec:
       have its scene and seed.
     - ``node``: the IRI of the tree's node that is linked to this scenario.
     - ``chosen_instance``: the scene instance that the user chose, for a scenario whose execution has none.
+    - ``fault``: a fault that the robots have in this execution.
     """
 
     feature: str
@@ -120,6 +128,7 @@ class ScenarioSpec:
     tree: TreeSpec | None = None
     node: str = ""
     chosen_instance: SceneInstance | None = None
+    fault: RobotFault | None = None
 
     @property
     def instance(self) -> SceneInstance | None:

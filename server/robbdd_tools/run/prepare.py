@@ -10,6 +10,7 @@ from pathlib import Path
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.catalog.robot_faults import RobotFault
 from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_pieces
 from robbdd_tools.gherkin.feature_files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Story, Variant
@@ -47,6 +48,8 @@ class RunRequest:
     - ``executions`` selects among the executions of the model; ``None`` selects all.
     - ``repeat`` is the number of repetitions of each scenario; ``None`` takes the number from the execution, or 1.
     - ``only`` filters the scenarios that the other fields select.
+    - ``faults``: if there are any, each scenario is executed once with each of these faults of the robots.
+    - ``completed``: is called with each execution, and returns it with clauses to be measured besides.
 
     The remaining fields are the model, its name in reports, the seed, and the variants to run (``None`` for all). If
     the model has executions, they define the run: each one executes the scenarios of its variant, and may set its own
@@ -61,6 +64,8 @@ class RunRequest:
     executions: tuple[Execution, ...] | None = None
     repeat: int | None = None
     is_wanted: Callable[[ScenarioSpec], bool] | None = None
+    faults: tuple[RobotFault, ...] = ()
+    completed: Callable[[ScenarioSpec], ScenarioSpec] | None = None
 
     def wants(self, variant: Iri) -> bool:
         """Return whether a variant is to be run."""
@@ -106,7 +111,8 @@ def _parts_of(requests: Sequence[RunRequest]) -> Iterator[_Part]:
         below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
         executions = request.chosen_executions()
-        yield from _parts(plan, request.name, request.seed, executions, below, request.repeat, request.is_wanted)
+        parts = _parts(plan, request.name, request.seed, executions, below, request.repeat, request.is_wanted)
+        yield from (replace(part, faults=request.faults, completed=request.completed) for part in parts)
 
 
 def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
@@ -153,6 +159,8 @@ class _Part:
     folder: str
     repeat: int
     is_wanted: Callable[[ScenarioSpec], bool] | None
+    faults: tuple[RobotFault, ...] = ()
+    completed: Callable[[ScenarioSpec], ScenarioSpec] | None = None
 
     def specs(self, folder: Path) -> Iterator[ScenarioSpec]:
         """Write the features of this part into the run folder ``folder`` and yield the scenarios to execute."""
@@ -170,7 +178,18 @@ class _Part:
 
     def _chosen(self, feature: str, story: Story, scenario: ScenarioText) -> Iterator[ScenarioSpec]:
         specs = self.writer.specs(feature, story.iri, scenario, self.repeat)
-        return (spec for spec in specs if self.is_wanted is None or self.is_wanted(spec))
+        wanted = (spec for spec in specs if self.is_wanted is None or self.is_wanted(spec))
+        if self.completed is not None:
+            wanted = map(self.completed, wanted)
+        if not self.faults:
+            return wanted
+        return (_with_fault(spec, fault) for spec in wanted for fault in self.faults)
+
+
+def _with_fault(spec: ScenarioSpec, fault: RobotFault) -> ScenarioSpec:
+    """Return an execution with a fault of the robots. It shares no behaviour tree's execution with other faults."""
+    tree = None if spec.tree is None else replace(spec.tree, name=f"{spec.tree.name} [{fault}]")
+    return replace(spec, name=f"{spec.name} [{fault}]", fault=fault, tree=tree)
 
 
 def _parts(

@@ -78,7 +78,7 @@ class ArmControl:
     ) -> Step:
         limit = self.robot.model.tool_speed
         try:
-            motion = planned(min(limit, speed or limit))
+            motion = planned(self.simulation.pace * min(limit, speed or limit))
         except Unreachable as error:
             where = f"at {self.time:.2f} s, {error}"
             raise BehaviourError(f"{self.robot.name} cannot follow its path within its joint limits {where}") from error

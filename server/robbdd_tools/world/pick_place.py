@@ -107,10 +107,10 @@ class PickPlace(ArmControl):
         given_up = self.time + PATIENCE
         while True:
             best = self._choose_grasp(name)
-            planned = self.simulation.pose(name)
+            planned = self.simulation.seen(name)
             yield from self.gripper.release(self)
             yield from self.move(best.above)
-            if not self.simulation.belts or not _has_moved(planned, self.simulation.pose(name)):
+            if not self.simulation.belts or not _has_moved(planned, self.simulation.seen(name)):
                 return best
             if self.time > given_up:
                 raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
@@ -119,10 +119,10 @@ class PickPlace(ArmControl):
     def _until_at_rest(self, name: str) -> Step:
         if not self.simulation.belts or name not in self.simulation.world.cast.objects:
             return
-        last, since = self.simulation.pose(name), 0
+        last, since = self.simulation.seen(name), 0
         for _ in range(round(PATIENCE / TICK)):
             yield from self.wait(1)
-            here, since = self.simulation.pose(name), since + 1
+            here, since = self.simulation.seen(name), since + 1
             if _has_moved(last, here):
                 last, since = here, 0
             if since * TICK >= STILL_FOR:

@@ -64,7 +64,7 @@ def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) ->
 
 
 def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    position, rotation = simulation.pose(carrier)
+    position, rotation = simulation.seen_place(carrier)
     bottom = np.array(region.center) - [0.0, 0.0, region.half[2]]
     others = _others(simulation, name, carrier)
     longest = int(np.argmax(region.half[:2]))
@@ -76,7 +76,7 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
     """Yield places on a board or tray: those with most room first, then by distance from the centre."""
-    position, rotation = simulation.pose(carrier)
+    position, rotation = simulation.seen_place(carrier)
     radius = footprint(simulation.world.cast.objects[name])
     others = _others(simulation, name, carrier)
     longest = int(np.argmax(region.half[:2]))
@@ -92,7 +92,7 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
 
 
 def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    position, _ = simulation.pose(carrier)
+    position, _ = simulation.seen_place(carrier)
     model = simulation.world.cast.objects[carrier]
     table = Pose((float(position[0]), float(position[1]), float(position[2])))
     area = field_before(robot.base, table, model)
@@ -116,7 +116,7 @@ def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float
     found: list[tuple[float, float, float]] = []
     for other, model in simulation.world.cast.objects.items():
         if model.free and other not in (name, carrier):
-            position, _ = simulation.pose(other)
+            position, _ = simulation.seen(other)
             found.append((float(position[0]), float(position[1]), footprint(model)))
     return found
 

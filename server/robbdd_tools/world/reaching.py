@@ -89,10 +89,12 @@ def approaches(
     objects = simulation.world.cast.objects
     if name not in objects:
         raise BehaviourError(f"there is no {name} in the scene")
-    data = simulation.data if data is None else data
     arm = arm_of(robot.model)
-    body = data.body(name)
-    position, rotation = body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+    position, rotation = simulation.seen(name)
+    if data is not None:
+        # A recorded state is the truth, whatever the robot perceives.
+        position, rotation = data.body(name).xpos.copy(), data.body(name).xmat.reshape(3, 3).copy()
+    data = simulation.data if data is None else data
     clearance = Clearance(simulation, robot, name, data)
     for grasp in gripper_of(robot.model).grasps(name, objects[name], position, rotation):
         at = tool_pose(robot.base, grasp.position, grasp.closing)

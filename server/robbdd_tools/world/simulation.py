@@ -13,6 +13,7 @@ import numpy as np
 
 from robbdd_tools.world.belts import Belts
 from robbdd_tools.world.contact_forces import ContactForces
+from robbdd_tools.world.disturbance import Disturbance
 from robbdd_tools.world.engine import SUBSTEPS, TICK, WARNINGS, mujoco
 from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SceneError, SimulationError
@@ -25,6 +26,7 @@ from robbdd_tools.world.touch_forces import TouchForces
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.robot_faults import RobotFault
     from robbdd_tools.monitor.trace import EventStamp, Trace
     from robbdd_tools.world.composition import World
 
@@ -76,6 +78,7 @@ class Simulation:
         limited = {element for element, name in world.cast.judged if name == "force_limit"}
         self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
         self.touches: TouchForces | None = None
+        self._disturbance: Disturbance | None = None
         self._go_home()
         things = [self.data.body(name) for name in world.cast.objects]
         unset = len(self.robots)
@@ -94,6 +97,27 @@ class Simulation:
         """Record the contact forces of some elements from the next ``restart`` on."""
         chosen = [name for name in (*self.world.cast.objects, *self.robots) if name in elements]
         self.touches = TouchForces(self.model, chosen, self.world.cast.objects, self.robots) if chosen else None
+
+    def introduce(self, fault: RobotFault) -> None:
+        """Let the robots have a fault from now on."""
+        self._disturbance = Disturbance(
+            fault, self.world.seed, self.robots, lambda agent: bool(self._held_by(agent)), self.model
+        )
+
+    @property
+    def pace(self) -> float:
+        """The speed of the robots as a multiple of the speed without a fault."""
+        return 1.0 if self._disturbance is None else self._disturbance.pace
+
+    def seen(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return the pose of an object as the robots perceive it, in the form of ``pose``."""
+        position, rotation = self.pose(name)
+        return (position if self._disturbance is None else self._disturbance.seen(position)), rotation
+
+    def seen_place(self, carrier: str) -> tuple[FloatArray, FloatArray]:
+        """Return the pose of an object that carries a goal as the robots perceive it, in the form of ``pose``."""
+        position, rotation = self.pose(carrier)
+        return (position if self._disturbance is None else self._disturbance.seen_place(position)), rotation
 
     @property
     def time(self) -> float:
@@ -131,6 +155,8 @@ class Simulation:
 
         Raises ``SimulationError`` if the state contains NaN or the engine warns.
         """
+        if self._disturbance is not None:
+            self._disturbance.end_tick(self.command)
         self._step()
         self.ticks += 1
         self.record()
@@ -182,6 +208,8 @@ class Simulation:
 
         A leaking cup has no vacuum.
         """
+        if self._disturbance is not None:
+            joints, opening = self._disturbance.command(robot, joints, opening)
         self._ctrl[robot.motors] = (joints - self._act[robot.targets]) / TICK
         leaks = robot.name in self._grips.leaking
         self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening

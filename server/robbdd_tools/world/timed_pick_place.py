@@ -103,7 +103,7 @@ class TimedPickPlace:
         """Move the joints for one tick towards the tool's next position; where there is none, they stay."""
         position, _ = self._arm.forward(self._joints)
         gap = self._from_base.T @ (target - self._base) - position
-        pull = self._speed * gap / (float(np.linalg.norm(gap)) + self._times.near)
+        pull = self._simulation.pace * self._speed * gap / (float(np.linalg.norm(gap)) + self._times.near)
         kept = exp(-self._times.damping * TICK)
         self._velocity = kept * self._velocity + (1.0 - kept) * pull
         self._ahead = self._joints
@@ -127,12 +127,12 @@ class TimedPickPlace:
         self._opening += min(step, max(-step, wanted - self._opening))
 
     def _part(self, name: str) -> FloatArray:
-        return self._simulation.pose(name)[0] + self._times.offset
+        return self._simulation.seen(name)[0] + self._times.offset
 
     def _middle(self, workspaces: Sequence[str]) -> FloatArray:
         """Return the middle (3,) m of a workspace in the world frame; raises ``SceneError``."""
         for workspace in workspaces:
             for carrier, region in self._simulation.world.cast.regions.get(workspace, ()):
-                position, rotation = self._simulation.pose(carrier)
+                position, rotation = self._simulation.seen_place(carrier)
                 return position + rotation @ np.array(region.center)
         raise SceneError(f"nothing in the scene carries {' or '.join(workspaces)}")

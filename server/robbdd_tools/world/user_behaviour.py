@@ -47,12 +47,12 @@ class AgentWorld:
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
         """Return position (m) and rotation matrix of an object; raises ``KeyError``."""
-        return self._simulation.pose(name)
+        return self._simulation.seen(name)
 
     def place(self, workspace: str) -> FloatArray:
         """Return the centre (m) of a workspace's bottom; raises ``KeyError``."""
         carrier, region = self._simulation.world.cast.regions[workspace][0]
-        position, rotation = self._simulation.pose(carrier)
+        position, rotation = self._simulation.seen_place(carrier)
         bottom: FloatArray = np.array(region.center) - [0.0, 0.0, region.half[2]]
         return position + rotation @ bottom
 
