@@ -29,7 +29,7 @@ SECTIONS = {
             "editors",
             "debugging",
         ),
-        *("gherkin", "pytest", "python", "troubleshooting"),
+        *("gherkin", "pytest", "python", "own-words", "troubleshooting"),
     ),
     "Examples": (),
     "Reference": (

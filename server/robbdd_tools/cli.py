@@ -18,6 +18,7 @@ from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.base.printable import printable
 from robbdd_tools.base.processes import end_requests
+from robbdd_tools.catalog.registry import problems_of_words
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
@@ -64,7 +65,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command: Callable[[argparse.Namespace], int] = options.command
     try:
         with end_requests(_end):
-            return _fetch_contexts(options) or command(options)
+            code = _fetch_contexts(options) or command(options)
+            for problem in problems_of_words():
+                print_note(f"robbdd: {problem}")
+            return code
     except _Ended as error:
         return signal_code(error.number)
     except BrokenPipeError:

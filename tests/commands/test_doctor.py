@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import closing
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,9 @@ from typing import Any
 import pytest
 
 from kit import schema_errors
-from robbdd_tools import __version__
+from robbdd_tools import __version__, cli
 from robbdd_tools.base.processes import Ending
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.cli import main
 from robbdd_tools.commands import doctor, installation, selftest
 from robbdd_tools.commands.doctor import Part, State, examine
@@ -25,7 +27,10 @@ from robbdd_tools.run.database import MIGRATIONS
 from robbdd_tools.run.store import FOLDER, RunStore
 
 DOCTOR = [sys.executable, "-m", "robbdd_tools.cli", "doctor"]
-CAREFUL = ["package", "python", "system", "libraries", "models", "shapes", "features", "simulation", "server", "store"]
+CAREFUL = [
+    *("package", "python", "system", "libraries", "catalog", "models", "shapes", "features", "simulation", "server"),
+    "store",
+]
 """Parts that must work wherever the tests run."""
 
 
@@ -71,6 +76,29 @@ def test_a_part_that_breaks_is_reported_and_the_others_are_tested(
         "✔ good        all well",
         f"✔ store       {tmp_path / '.robbdd' / 'runs'}: 0 runs, writable",
     ]
+
+
+def test_words_of_packages_that_are_left_out_are_a_failed_part(
+    only: Callable[..., None], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = load_catalog()
+    assert f"{len(whole.predicates)} predicates" in installation.words()
+    monkeypatch.setattr(installation, "load_catalog", lambda: replace(whole, problems=("'a' is left out: b",)))
+    only(catalog=installation.words)
+    assert main(["doctor", str(tmp_path)]) == 1
+    assert capsys.readouterr().out.splitlines()[:2] == [
+        "✗ catalog     'a' is left out: b",
+        "              Fix: update or uninstall the packages that are named",
+    ]
+
+
+def test_words_of_packages_that_are_left_out_are_named_after_a_command(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cli, "problems_of_words", lambda: ("'a' is left out: \x1b[2J",))
+    (tmp_path / "lab.scene").write_text("", encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == "robbdd: 'a' is left out: \\x1b[2J\n"
 
 
 def test_what_others_named_is_printed_escaped(

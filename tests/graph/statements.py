@@ -7,7 +7,7 @@ from rdflib.namespace import RDF
 from rdflib.term import Node
 
 from kit import fixture
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.write.build import BuiltGraph, build_graph
 
 SHORT = {**PREFIXES, "t": "https://example.org/t/", "lab": "https://example.org/env/"}

@@ -12,8 +12,8 @@ from rdflib.term import Node
 from kit import corpus
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.catalog.term_prefixes import WORKBENCH
 from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
-from robbdd_tools.graph.rdf.vocabulary import WORKBENCH
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.shapes.validate import validate
 from robbdd_tools.graph.write.build import BuiltGraph, build_graph

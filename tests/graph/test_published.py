@@ -14,9 +14,9 @@ from kit import Fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.catalog.term_prefixes import METAMODELS
 from robbdd_tools.graph.acceptance_model import Iri, Product, Table
 from robbdd_tools.graph.rdf.serialize import parse, serialize
-from robbdd_tools.graph.rdf.vocabulary import METAMODELS
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.shapes.validate import validate
 from robbdd_tools.graph.write.foreign import read_graph_file

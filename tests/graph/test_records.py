@@ -9,9 +9,9 @@ import pytest
 from rdflib import Graph
 
 from robbdd_tools.base.document import Document
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf import records as records_module
 from robbdd_tools.graph.rdf.records import Records
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 from robbdd_tools.graph.shapes.validate import validate
 from robbdd_tools.graph.write import foreign
 from robbdd_tools.graph.write.foreign import read_graph_file

@@ -13,8 +13,8 @@ from rdflib.term import Node
 from graph.models import EVERYTHING
 from graph.statements import built
 from kit import MODEL
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.serialize import FORMATS, UnreadableGraph, parse, serialize
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 
 NAMESPACES = {
     "t": "https://example.org/t/",

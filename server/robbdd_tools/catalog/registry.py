@@ -1,14 +1,14 @@
 """Collect the words of the language: scan our own folders, then the entry points of other packages.
 
 A third-party package adds a word by an entry point of the group ``robbdd_tools.catalog`` that names a module-level
-``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel``.
+``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel`` (``examples/plugin``).
 """
 
 from __future__ import annotations
 
 import pkgutil
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -16,13 +16,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
+from robbdd_tools.catalog.foreign_words import GROUP, Word, foreign_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    Word = Predicate | Behaviour | ObjectModel | RobotModel
-
-GROUP = "robbdd_tools.catalog"
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Word boundary inside a name like ``redCube``."""
 FOLDERS = ("predicates", "behaviours", "objects", "robots")
@@ -36,12 +34,16 @@ class DuplicateWord(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Catalog:
-    """All registered words, by name, each mapping in alphabetical order."""
+    """All registered words, by name, each mapping in alphabetical order.
+
+    ``problems`` names words of other packages that are left out, with the reason.
+    """
 
     predicates: Mapping[str, Predicate]
     behaviours: Mapping[str, Behaviour]
     objects: Mapping[str, ObjectModel]
     robots: Mapping[str, RobotModel]
+    problems: tuple[str, ...] = ()
 
     def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
         """Return the object model for a scene object by its name, else by the names of its ``sets``."""
@@ -54,8 +56,15 @@ class Catalog:
 
 @cache
 def load_catalog() -> Catalog:
-    """Return the catalog of this installation; raises ``DuplicateWord`` if two files define one name."""
-    return build_catalog([*_own_words(), *_foreign_words()])
+    """Return the catalog of this installation; raises ``DuplicateWord`` if two of our files define one name."""
+    own = list(_own_words())
+    added, problems = foreign_words(entry_points(group=GROUP), own)
+    return replace(build_catalog([*own, *added]), problems=tuple(problems))
+
+
+def problems_of_words() -> tuple[str, ...]:
+    """Return which words of other packages are left out, and why; empty if this process has not used the catalog."""
+    return load_catalog().problems if load_catalog.cache_info().currsize else ()
 
 
 def build_catalog(words: Iterable[tuple[str, Word]]) -> Catalog:
@@ -88,11 +97,6 @@ def _own_words() -> Iterable[tuple[str, Word]]:
             for value in vars(module).values():
                 if isinstance(value, Predicate | Behaviour | ObjectModel | RobotModel):
                     yield module.__name__, value
-
-
-def _foreign_words() -> Iterable[tuple[str, Word]]:
-    for entry in entry_points(group=GROUP):
-        yield entry.value, entry.load()
 
 
 def _by_names(models: Mapping[str, Model], local_name: str, sets: Iterable[str]) -> Model | None:

@@ -17,6 +17,7 @@ from robbdd_tools.base.data import PACKAGE
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.interpreter import working_folder
 from robbdd_tools.base.processes import run_for
+from robbdd_tools.catalog.registry import load_catalog
 
 DISTRIBUTION = "robbdd-tools"
 REINSTALL = f"python -m pip install --force-reinstall {DISTRIBUTION}"
@@ -99,6 +100,20 @@ def editor() -> str:
     return f"{listed}\n{node}"
 
 
+def words() -> str:
+    """Return the number of the catalog's words. Raises ``Unavailable`` if words of other packages are left out."""
+    catalog = load_catalog()
+    if catalog.problems:
+        raise Unavailable("\n".join(catalog.problems), "update or uninstall the packages that are named")
+    counts = {
+        "predicates": catalog.predicates,
+        "behaviours": catalog.behaviours,
+        "objects": catalog.objects,
+        "robots": catalog.robots,
+    }
+    return ", ".join(f"{len(found)} {kind}" for kind, found in counts.items())
+
+
 def _required(extra: str | None) -> list[str]:
     """Return the distributions that this distribution requires: always, or with the given ``extra``."""
     try:
@@ -155,5 +170,6 @@ TESTS: Mapping[str, Callable[[], str]] = {
     "system": system,
     "libraries": libraries,
     "extras": extras,
+    "catalog": words,
     "editor": editor,
 }

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.property_conditions import TRUE, Properties, PropertyCondition
 from robbdd_tools.base.property_values import ELEMENT, NUMBER, TEXT, TRUTH, PropertyValue, quantity_value
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES, QUANTITY, expand
+from robbdd_tools.catalog.term_prefixes import PREFIXES
+from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
 from robbdd_tools.graph.write.imported_graphs import ImportedGraph, imported_graph
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import MAX_COPIES

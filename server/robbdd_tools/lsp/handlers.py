@@ -21,6 +21,7 @@ from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.pull_diagnostics import can_pull, register_pull
+from robbdd_tools.lsp.reported_words import report_words
 from robbdd_tools.lsp.run_history import register_run_history
 from robbdd_tools.lsp.scene_preview import register_scene
 from robbdd_tools.lsp.server import RobbddServer
@@ -87,6 +88,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.requests.repeated = frozenset(stale.retry_on_content_modified if stale is not None else ())
         ls.spawn(watch_files(ls))
         ls.spawn(follow_settings(ls))
+        ls.spawn(report_words(ls))
         ls.survey.schedule()
         await ls.stored_verdicts.load()
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.prefixes import prefix_for, user_prefixes
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 
 if TYPE_CHECKING:
     from rdflib import Graph

@@ -25,7 +25,7 @@ from robbdd_tools.base.files import Unreadable, load_text, read_text, uri_to_pat
 from robbdd_tools.base.limits import MIB, MODEL_SIZE
 from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.graph.rdf.vocabulary import METAMODELS
+from robbdd_tools.catalog.term_prefixes import METAMODELS
 
 Json = dict[str, Any]
 CONTEXT_FILE = "context.jsonld"

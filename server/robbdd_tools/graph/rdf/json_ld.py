@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.canonical import sort_text
 from robbdd_tools.graph.rdf.contexts import Json, bundled_context
 from robbdd_tools.graph.rdf.libraries import json_object
 from robbdd_tools.graph.rdf.lists import Lists
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES, expand
+from robbdd_tools.graph.rdf.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph

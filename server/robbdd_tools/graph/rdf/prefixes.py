@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES, expand
+from robbdd_tools.catalog.term_prefixes import PREFIXES
+from robbdd_tools.graph.rdf.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph

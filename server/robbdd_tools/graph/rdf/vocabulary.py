@@ -1,37 +1,17 @@
 """The vocabulary of the graph, with published namespaces and those of RobBDD.
 
-Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever prefixes the user's file
-has.
+Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``catalog/term_prefixes``, whatever prefixes the
+user's file has.
 """
 
 from __future__ import annotations
 
 from functools import cache
 
-METAMODELS = "https://secorolab.github.io/metamodels/"
-WORKBENCH = "https://robbdd.org/metamodels/workbench#"
-"""Namespace of terms that the published vocabulary lacks: groups, free text, events in When, narrative, order."""
+from robbdd_tools.catalog.term_prefixes import PREFIXES
+
 SHAPES = "https://robbdd.org/metamodels/shapes#"
 """Namespace of our SHACL shapes; a shape's local name is the diagnostic code without ``shacl-``."""
-
-PREFIXES = {
-    "bdd": f"{METAMODELS}acceptance-criteria/bdd#",
-    "time": f"{METAMODELS}time#",
-    "task": f"{METAMODELS}task#",
-    "bhv": f"{METAMODELS}behaviour#",
-    "bt": f"{METAMODELS}behaviour/behaviour-tree#",
-    "env": f"{METAMODELS}environment#",
-    "agn": f"{METAMODELS}agent#",
-    "obs": f"{METAMODELS}observation#",
-    "exec": f"{METAMODELS}execution-context#",
-    "py": f"{METAMODELS}languages/python#",
-    "ros": "https://index.ros.org/p/",
-    "rbw": WORKBENCH,
-    "earl": "http://www.w3.org/ns/earl#",
-    "prov": "http://www.w3.org/ns/prov#",
-    "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
-    "xsd": "http://www.w3.org/2001/XMLSchema#",
-}
 
 TIME_TYPES = {
     "before": "time:BeforeEventConstraint",
@@ -41,9 +21,9 @@ TIME_TYPES = {
 QUANTITY = "https://w3id.org/cdt/ucum"
 """Datatype of a number with a unit (Custom Datatypes, https://w3id.org/cdt/)."""
 SOME_TIME = "rbw:AtSomeTime"
+"""Class of a time constraint that must hold at some time in its window instead of throughout."""
 OCCURRENCE = "rbw:occurrence"
 HORIZON_VARIABLE = "rbw:horizon-variable"
-"""Class of a time constraint that must hold at some time in its window instead of throughout."""
 TOGETHER = "rbw:together-with"
 """The behaviour in the same When, written before it, at the same time as which a behaviour is executed."""
 FURTHER_BEHAVIOUR = "rbw:further-behaviour"

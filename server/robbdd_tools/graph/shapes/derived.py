@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.term_prefixes import WORKBENCH
 from robbdd_tools.graph.rdf.records import Records
-from robbdd_tools.graph.rdf.vocabulary import WORKBENCH, expand
+from robbdd_tools.graph.rdf.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.rdf.vocabulary import MEMBERSHIPS, METAMODELS, expand
+from robbdd_tools.catalog.term_prefixes import METAMODELS
+from robbdd_tools.graph.rdf.vocabulary import MEMBERSHIPS, expand
 
 if TYPE_CHECKING:
     from rdflib import Graph

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.term_prefixes import WORKBENCH
 from robbdd_tools.graph.rdf.lists import Lists
-from robbdd_tools.graph.rdf.vocabulary import WORKBENCH, expand
+from robbdd_tools.graph.rdf.vocabulary import expand
 from robbdd_tools.graph.write.foreign import node_names
 
 if TYPE_CHECKING:

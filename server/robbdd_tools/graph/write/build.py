@@ -13,8 +13,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.graph_formats import graph_format
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, prefix_for
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 from robbdd_tools.graph.write.behaviour_trees import add_behaviour_tree
 from robbdd_tools.graph.write.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.write.built import Clash

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.contexts import published_context
 from robbdd_tools.graph.rdf.libraries import json_object
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 
 if TYPE_CHECKING:
     from rdflib import Graph

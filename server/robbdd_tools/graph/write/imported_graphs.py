@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.graph_formats import graph_format
+from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES, expand
+from robbdd_tools.graph.rdf.vocabulary import expand
 from robbdd_tools.graph.write.foreign import blank_owners, graph_places, node_names
 from robbdd_tools.graph.write.foreign_imports import IMPORTS, import_fault, imported_file, read_import
 from robbdd_tools.graph.write.node_positions import turtle_statements

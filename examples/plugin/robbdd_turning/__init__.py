@@ -1,0 +1,1 @@
+"""Predicates about turning objects, for RobBDD."""
