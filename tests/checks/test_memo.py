@@ -9,6 +9,7 @@ from checks.models import LINES, story
 from kit import FOLDER, MODEL, SCENE, STORY, TEMPLATE
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.checks import memo
+from robbdd_tools.checks.file_caches import without_cache
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
 from robbdd_tools.names.elements import Site
@@ -43,7 +44,7 @@ def cold(text: str, scene: str = SCENE) -> list[Diagnostic]:
     """Analyse a text with empty caches; restore the caches afterwards."""
     fresh = project(scene)
     fresh.open(URI, 1, text)
-    with memo.without_cache():
+    with without_cache():
         return fast_diagnostics(fresh.snapshot(), URI)
 
 

@@ -17,7 +17,7 @@ from edits import PIECES, Edit
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.checks.memo import without_cache
+from robbdd_tools.checks.file_caches import without_cache
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import outline

@@ -10,7 +10,7 @@ import pytest
 
 from kit import FOLDER
 from robbdd_tools.base.diagnostic import Diagnostic
-from robbdd_tools.checks.memo import without_cache
+from robbdd_tools.checks.file_caches import without_cache
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names import scope
 from robbdd_tools.names.index import FileIndex

@@ -24,7 +24,7 @@ from robbdd_tools.checks.execution_fit import execution_fit
 from robbdd_tools.checks.foreign_variable import foreign_variable
 from robbdd_tools.checks.joint_ends import joint_ends
 from robbdd_tools.checks.many_scenarios import many_scenarios
-from robbdd_tools.checks.memo import findings_in
+from robbdd_tools.checks.memo import Kept
 from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.model_name import model_name
@@ -57,9 +57,12 @@ from robbdd_tools.checks.unused_import import unused_import
 from robbdd_tools.checks.unused_set import unused_set
 from robbdd_tools.checks.unused_task import unused_task
 from robbdd_tools.checks.unused_variable import unused_variable
+from robbdd_tools.names.anchors import Anchored, Anchors
+from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
     from robbdd_tools.names.project import Snapshot
 
 DECLARATION_RULES = (
@@ -112,6 +115,35 @@ FILE_RULES = (
     unused_task,
     unused_variable,
 )
+_RULED: frozenset[type[object]] = frozenset(
+    {
+        tree.ElementSet,
+        tree.SimilarSet,
+        tree.ConstantSet,
+        tree.Template,
+        tree.Story,
+        tree.Variant,
+        tree.Distribution,
+        tree.KinematicTree,
+        tree.SceneInstance,
+        tree.Provider,
+        tree.Policy,
+        tree.Execution,
+    }
+)
+"""Declarations that rules check."""
+
+
+def _findings(site: Site) -> tuple[Anchored, ...]:
+    found: list[Diagnostic] = []
+    for rule in DECLARATION_RULES:
+        checkpoint()
+        found += rule(site)
+    anchors = Anchors(site.snapshot)
+    return tuple(anchors.loosened(diagnostic, site.uri, site.placed) for diagnostic in found)
+
+
+KEPT = Kept(_RULED, _findings)
 
 
 def run_checks(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
@@ -123,4 +155,8 @@ def run_checks(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     for rule in FILE_RULES:
         checkpoint()
         found += rule(snapshot, file)
-    return [*found, *findings_in(snapshot, file, DECLARATION_RULES)]
+    anchors = Anchors(snapshot)
+    for placed, kept in KEPT.of(snapshot, file):
+        if kept:
+            found += [anchors.fixed(finding, uri, placed) for finding in kept]
+    return found

@@ -56,7 +56,7 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
     trees = [
         (root, placed.offset)
-        for placed in file.declarations
+        for placed in file.of(tree.BehaviourTree)
         if isinstance(root := placed.declaration.tree, tree.BehaviourTree) and not placed.declaration.faults
     ]
     if not trees:
@@ -145,7 +145,7 @@ def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:
 
 def links_in(file: FileAnalysis) -> Iterator[Link]:
     """Yield the links of a file to nodes, in text order."""
-    for placed in file.declarations:
+    for placed in file.of(tree.Template):
         for use, node, repeated, siblings in _linked_uses(placed.declaration):
             target = placed.targets.get(node)
             if target is not None:

@@ -28,7 +28,7 @@ def known_entries(language: str) -> Mapping[str, object]:
 
 def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each model or behaviour that the catalog lacks."""
-    for placed in file.declarations:
+    for placed in file.of(tree.SceneInstance, tree.Implementation):
         root = placed.declaration.tree
         if not isinstance(root, tree.SceneInstance | tree.Implementation):
             continue

@@ -25,7 +25,7 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
 
     A scene is skipped if a loaded executable scene defines its models.
     """
-    for placed in file.declarations:
+    for placed in file.of(tree.Scene):
         scene = placed.declaration.tree
         if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
             continue

@@ -2,43 +2,51 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.facts import UNIQUE_KINDS, facts_of
+from robbdd_tools.checks.tally import Tally
 from robbdd_tools.names.index import FileIndex
-from robbdd_tools.names.namespaces import namespace_of
+from robbdd_tools.names.namespaces import implied_namespace
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import FILE_NAMESPACE
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 
 if TYPE_CHECKING:
+    from robbdd_tools.checks.tally import Counts
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import Declaration
 
 Node = tuple[str | None, str]
 """IRI of a namespace, ``None`` where it is declared in another file, and a name in it."""
+_Owner = tuple[str, SymbolKind, str]
+"""The written namespace of a declaration, its kind and its name. Kind and name matter if the namespace is implied."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Names of declarations that have the same namespace. ``repeated`` are those that are declared more than once."""
+
+    names: Set[str]
+    repeated: Set[str]
 
 
 def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each declaration of the file whose IRI another declaration, here or in an imported file, already has."""
-    uri = file.document.uri
-    scope, declaring = snapshot.scope(uri), _declaring(snapshot)
-    names: set[str] = set()
-    others: set[str] = set()
-    own: Counter[Node] = Counter()
-    for iri, namespace, name in _own_names(scope.own):
+    scope = snapshot.scope(file.document.uri)
+    own: dict[str, list[_Group]] = {}
+    for iri, namespace, group in _own_groups(scope.own):
         known = iri or scope.namespace_iri(scope.own, namespace)
         if known is not None:
-            own[known, name] += 1
-            files = (other for key in (known, None) for other in declaring.get((key, name), ()))
-            found = [other for other in files if other != uri and scope.reaches(other)]
-            names.update([name] if found else [])
-            others.update(found)
-    names.update(name for (_, name), count in own.items() if count > 1)
+            own.setdefault(known, []).append(group)
+    names = _repeated(own)
+    others = _shared(scope, own, names) if scope.is_small else _shared_in_large(snapshot, scope, own, names)
     if not names:
         return
     first: dict[str, Definition] = {}
@@ -75,29 +83,90 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
                 yield definition
 
 
+def _repeated(own: Mapping[str, list[_Group]]) -> set[str]:
+    """Return the names that occur more than once in the same namespace."""
+    found: set[str] = set()
+    for groups in own.values():
+        seen: set[str] = set()
+        for group in groups:
+            found |= group.repeated
+            if len(groups) > 1:
+                found |= seen & group.names
+                seen |= group.names
+    return found
+
+
+def _shared(scope: Scope, own: Mapping[str, list[_Group]], names: set[str]) -> set[str]:
+    """Return the other files that may declare the same nodes, and add the names of these nodes."""
+    found: set[str] = set()
+    for other in scope.files[1:]:
+        for iri, _, theirs in _own_groups(other):
+            for known, groups in own.items():
+                common = [group.names & theirs.names for group in groups] if iri in (known, None) else []
+                if any(common):
+                    found.add(other.document.uri)
+                    names.update(*common)
+    return found
+
+
+def _shared_in_large(snapshot: Snapshot, scope: Scope, own: Mapping[str, list[_Group]], names: set[str]) -> set[str]:
+    """Do the same as ``_shared``, without a look at each file."""
+    declaring, uri = _declaring(snapshot), scope.own.document.uri
+    found: set[str] = set()
+    for iri, groups in own.items():
+        for name in frozenset[str]().union(*(group.names for group in groups)):
+            files = [other for key in (iri, None) for other in declaring.get((key, name), ())]
+            others = [other for other in files if other != uri and scope.reaches(other)]
+            names.update([name] if others else [])
+            found.update(others)
+    return found
+
+
 @kept_with_key
 def _declaring(snapshot: Snapshot) -> Mapping[Node, list[str]]:
     """Return the files that declare each node, those of unknown namespaces by name."""
     found: dict[Node, list[str]] = {}
     for uri, source in snapshot.sources.items():
-        for iri, _, name in _own_names(source) if isinstance(source, FileIndex) else ():
-            found.setdefault((iri, name), []).append(uri)
+        for iri, _, group in _own_groups(source) if isinstance(source, FileIndex) else ():
+            for name in group.names:
+                found.setdefault((iri, name), []).append(uri)
     return found
 
 
 @kept_with_key
-def _own_names(file: FileIndex) -> tuple[tuple[str | None, str, str], ...]:
-    """Return the names that must be unique: the IRI of the namespace, ``None`` if imported, its name, and the name."""
+def _own_groups(file: FileIndex) -> tuple[tuple[str | None, str, _Group], ...]:
+    """Return the names that must be unique, with the IRI of their namespace, ``None`` if imported, and its name."""
     iris: dict[str, str] = {}
     for placed in file.declarations:
         root = placed.declaration.tree
         if isinstance(root, tree.Namespace):
             iris.setdefault(root.name.text, root.iri.value)
-    found: list[tuple[str | None, str, str]] = []
-    for placed in file.declarations:
-        for written, names in facts_of(placed.declaration).own_names.items():
-            namespace = written
-            if namespace == FILE_NAMESPACE:
-                namespace = namespace_of(file, placed.declaration.symbols[0]) or FILE_NAMESPACE
-            found += ((iris.get(namespace), namespace, name) for name in names)
+    found: list[tuple[str | None, str, _Group]] = []
+    for (written, kind, path), group in _grouped(_NODES.of(file)).items():
+        namespace = written
+        if namespace == FILE_NAMESPACE:
+            namespace = implied_namespace(file, kind, path) or FILE_NAMESPACE
+        found.append((iris.get(namespace), namespace, group))
     return tuple(found)
+
+
+def _nodes(declaration: Declaration) -> Iterator[tuple[_Owner, str]]:
+    for namespace, names in facts_of(declaration).own_names.items():
+        first, owner = declaration.symbols[0], (namespace, SymbolKind.STORY, "")
+        if namespace == FILE_NAMESPACE and first.kind in (SymbolKind.EVENT, SymbolKind.TASK):
+            owner = (namespace, first.kind, first.path)
+        yield from ((owner, name) for name in names)
+
+
+_NODES = Tally[tuple[_Owner, str]](_nodes)
+
+
+@kept_with_key
+def _grouped(counts: Counts[tuple[_Owner, str]]) -> Mapping[_Owner, _Group]:
+    names: dict[_Owner, set[str]] = {}
+    repeated: dict[_Owner, set[str]] = {}
+    for (owner, name), count in counts.by_fact.items():
+        names.setdefault(owner, set()).add(name)
+        if count > 1:
+            repeated.setdefault(owner, set()).add(name)
+    return {owner: _Group(found, repeated.get(owner, frozenset())) for owner, found in names.items()}

@@ -24,7 +24,7 @@ CODE = "execution-fit"
 
 def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report behaviours that the implementation does not execute, and distances that are not between two elements."""
-    for placed in file.declarations:
+    for placed in file.of(tree.Execution, tree.Policy):
         site = Site(snapshot, file, placed)
         match site.tree:
             case tree.Execution() as execution:

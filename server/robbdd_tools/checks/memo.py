@@ -1,45 +1,26 @@
-"""Cache the diagnostics of each declaration, or scenario of a story, until it or a dependency changes."""
+"""Keep a value of each declaration, or scenario of a story, until it or a dependency changes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.facts import facts_of
-from robbdd_tools.names.anchors import Anchored, Anchors
+from robbdd_tools.checks.file_caches import FileCache
 from robbdd_tools.names.elements import Site
 from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.scope import Scope
     from robbdd_tools.syntax.declaration import Declaration
 
-Rule = Callable[[Site], "Iterator[Diagnostic]"]
-CACHED_FILES = 256
-_RULED = (
-    tree.ElementSet,
-    tree.SimilarSet,
-    tree.ConstantSet,
-    tree.Template,
-    tree.Story,
-    tree.Variant,
-    tree.Distribution,
-    tree.KinematicTree,
-    tree.SceneInstance,
-    tree.Provider,
-    tree.Policy,
-    tree.Execution,
-)
-"""Declarations that rules check."""
+Value = TypeVar("Value")
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
 """Declarations whose own references matter to those that refer to them."""
 _FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
@@ -47,60 +28,60 @@ _FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
 
 
 @dataclass(frozen=True, slots=True)
-class _Entry:
-    """The cached diagnostics of a declaration.
+class _Entry(Generic[Value]):
+    """The cached value of a declaration.
 
-    They depend on the declarations in ``around``, and on which declarations have the ``names``. ``paths`` are all
+    It depends on the declarations in ``around``, and on which declarations have the ``names``. ``paths`` are all
     qualified names that the declaration itself looked up.
     """
 
     names: frozenset[str]
     paths: frozenset[str]
     around: frozenset[Declaration]
-    findings: tuple[Anchored, ...]
+    value: Value
 
 
 @dataclass(frozen=True, slots=True)
-class _Run:
-    """The cached results of a file."""
+class _Run(Generic[Value]):
+    """The cached values of a file."""
 
     scope: Scope
-    entries: Mapping[Declaration, _Entry]
+    entries: Mapping[Declaration, _Entry[Value]]
 
 
-_runs: dict[str, _Run] = {}
+class Kept(Generic[Value]):
+    """Values of the declarations with certain syntax trees. The values of unchanged declarations are kept.
+
+    ``make`` returns the value of a declaration. It may depend on the declaration, on those that the declaration names,
+    and on the sets and scenes that these name. It must not contain absolute positions.
+    """
+
+    def __init__(self, trees: Set[type[object]], make: Callable[[Site], Value]) -> None:
+        self._trees = trees
+        self._make = make
+        self._runs = FileCache[_Run[Value]]()
+
+    def of(self, snapshot: Snapshot, file: FileAnalysis) -> Iterator[tuple[PlacedDeclaration, Value]]:
+        """Yield the declarations of a file, or their parts, with their values."""
+        uri = file.document.uri
+        scope = snapshot.scope(uri)
+        known = _still_valid(self._runs.get(uri), scope)
+        entries: dict[Declaration, _Entry[Value]] = {}
+        for placed in file.parts():
+            declaration = placed.declaration
+            if type(declaration.tree) not in self._trees:
+                continue
+            entry = entries.get(declaration) or known.get(declaration)
+            if entry is None:
+                value = self._make(Site(snapshot, file, placed))
+                names, around = _around(scope, declaration)
+                entry = _Entry(names, placed.targets.resolution.looked_up, around, value)
+            entries[declaration] = entry
+            yield placed, entry.value
+        self._runs.put(uri, _Run(scope, entries))
 
 
-def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
-    """Yield the diagnostics of rules for the declarations of a file. Unchanged declarations are not checked again."""
-    uri = file.document.uri
-    scope = snapshot.scope(uri)
-    known = _still_valid(_runs.get(uri), scope)
-    anchors = Anchors(snapshot)
-    entries: dict[Declaration, _Entry] = {}
-    for placed in file.parts():
-        declaration = placed.declaration
-        if not isinstance(declaration.tree, _RULED):
-            continue
-        entry = entries.get(declaration) or known.get(declaration)
-        if entry is None:
-            site = Site(snapshot, file, placed)
-            found: list[Diagnostic] = []
-            for rule in rules:
-                checkpoint()
-                found += rule(site)
-            names, around = _around(scope, declaration)
-            loosened = tuple(anchors.loosened(diagnostic, uri, placed) for diagnostic in found)
-            entry = _Entry(names, placed.targets.resolution.looked_up, around, loosened)
-        entries[declaration] = entry
-        for finding in entry.findings:
-            yield anchors.fixed(finding, uri, placed)
-    if len(_runs) >= CACHED_FILES:
-        _runs.clear()
-    _runs[uri] = _Run(scope, entries)
-
-
-def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]:
+def _still_valid(run: _Run[Value] | None, scope: Scope) -> Mapping[Declaration, _Entry[Value]]:
     """Return the cached entries that no change can have affected."""
     if run is None or run.scope.files[1:] != scope.files[1:]:
         return {}
@@ -174,13 +155,3 @@ def _declared_as(scope: Scope, name: str) -> Iterator[Declaration]:
             for entry in file.names.entries[name]:
                 if entry.kind is kind:
                     yield file.declarations[entry.declaration].declaration
-
-
-@contextmanager
-def without_cache() -> Generator[None]:
-    """Disable the cache inside the block, for comparison."""
-    kept = dict(_runs)
-    _runs.clear()
-    yield
-    _runs.clear()
-    _runs.update(kept)

@@ -30,7 +30,7 @@ def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     own = uri_to_path(file.document.uri)
     if own is None:
         return
-    for placed in file.declarations:
+    for placed in file.of(tree.SceneInstance):
         if isinstance(placed.declaration.tree, tree.SceneInstance):
             for node in walk(placed.declaration.tree):
                 if isinstance(node, tree.Model):

@@ -61,7 +61,7 @@ def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     own = uri_to_path(file.document.uri)
     if own is None:
         return
-    for placed in file.declarations:
+    for placed in file.of(tree.SceneInstance):
         for named in part_names(placed.declaration):
             parts = parts_of(named.model, own.parent)
             if parts is None or parts.may_have(named.text.value, *ACCEPTED[named.entry]):

@@ -19,7 +19,7 @@ _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\s<>\"{}|\\^`]*")
 
 def namespace_iri(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each namespace that is not an absolute IRI."""
-    for placed in analysis.declarations:
+    for placed in analysis.of(Namespace):
         root = placed.declaration.tree
         if isinstance(root, Namespace) and not _IRI.fullmatch(root.iri.value):
             uri, span = analysis.document.uri, root.iri.span.shifted(placed.offset)

@@ -42,7 +42,7 @@ class Gap:
 
 def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report elements without a model. If a scenario uses one of them, the report is a warning."""
-    for placed in file.declarations:
+    for placed in file.of(tree.Scene):
         scene = Site(snapshot, file, placed)
         gaps = gaps_of(scene)
         if gaps:

@@ -32,7 +32,7 @@ Names = frozenset[str]
 
 def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report the first container of a scene that has no standard place, and scenarios with too many agents."""
-    for placed in file.declarations:
+    for placed in file.of(tree.Scene):
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
             yield from _containers(scene)

@@ -28,7 +28,7 @@ WITHOUT_TOPIC = "the clause stays unknown if an execution uses this policy"
 def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report every element that a simulation cannot provide, and offer the simulated replacement as a quick fix."""
     uri = file.document.uri
-    for placed in file.declarations:
+    for placed in file.of(tree.Implementation, tree.Provider, tree.Policy):
         found = _ros(placed.declaration.tree)
         if found is None or placed.declaration.faults:
             continue

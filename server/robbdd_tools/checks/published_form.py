@@ -19,12 +19,12 @@ from robbdd_tools.names.indirect_names import ELEMENT_ROLES
 from robbdd_tools.names.namespaces import namespace_of, only_namespace
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Placed
+from robbdd_tools.syntax.declaration import Placed
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
-    from robbdd_tools.names.index import FileIndex
+    from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.resolve import Resolution
     from robbdd_tools.syntax.declaration import Declaration
 
 _NAMED = (
@@ -39,11 +39,13 @@ def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
     """Report each declaration that has a part in the published form."""
     uri = file.document.uri
     index = snapshot.scope(uri).own
+    own = only_namespace(index.names)
     for placed in file.declarations:
         root = placed.declaration.tree
         if not isinstance(root, _NAMED) or placed.declaration.faults:
             continue
-        changes = [*_changes(placed.declaration, _namespace(index, placed)), *_through_scenes(placed)]
+        namespace = own if own or root.namespace else namespace_of(index, placed.declaration.symbols[0])
+        changes = [*_changes(placed.declaration, namespace), *_through_scenes(placed.targets.resolution)]
         if changes:
             edits = tuple(Edit(uri, span.shifted(placed.offset), text) for span, text in changes)
             message = f"'{root.name.text}' is written in the published form: the fix rewrites it in the current one"
@@ -52,20 +54,21 @@ def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             yield Diagnostic(uri, place, Severity.HINT, "published-form", message, fixes=(fix,))
 
 
-def _namespace(index: FileIndex, placed: PlacedDeclaration) -> str | None:
-    """Return the namespace that a declaration implies or, without one, the namespace of its file."""
-    symbol = placed.declaration.symbols[0]
-    left_out = symbol.namespace == FILE_NAMESPACE
-    return namespace_of(index, symbol) if left_out else only_namespace(index.names)
+def _through_scenes(resolution: Resolution) -> list[Change]:
+    """Return the changes of references that name an element by its scene (``lab_scene.cube``)."""
+    if not resolution.parts:
+        return list(_own_through_scenes(resolution))
+    return [
+        (span.shifted(placed.offset), path)
+        for placed, part in zip(resolution.declaration.parts, resolution.parts, strict=True)
+        for span, path in _own_through_scenes(part)
+    ]
 
 
-def _through_scenes(placed: PlacedDeclaration) -> Iterator[Change]:
-    """Yield the changes of references that name an element by its scene (``lab_scene.cube``)."""
-    for reference in placed.declaration.references:
-        ref = reference.ref
-        target = placed.targets.get(ref) if ref.role in ELEMENT_ROLES and "." in ref.path else None
-        if target is not None and target.symbol.path != ref.path:
-            yield ref.span, target.symbol.path
+@kept_with_key
+def _own_through_scenes(resolution: Resolution) -> tuple[Change, ...]:
+    found = ((ref, target.path) for ref, target in resolution.targets.items() if ref.role in ELEMENT_ROLES)
+    return tuple((ref.span, path) for ref, path in found if "." in ref.path and path != ref.path)
 
 
 @kept_with_key

@@ -28,6 +28,9 @@ CODE = "python-source"
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 
+_WITH_CODE = (tree.Implementation, tree.Observation, tree.Policy, tree.BehaviourTree, tree.SceneInstance)
+"""Declarations that may name Python code."""
+
 
 @dataclass(frozen=True, slots=True)
 class Missing:
@@ -43,7 +46,7 @@ def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     own = uri_to_path(file.document.uri)
     if own is None or not own.parent.is_dir():
         return
-    for placed in file.declarations:
+    for placed in file.of(*_WITH_CODE):
         for source in code_names(placed.declaration):
             problem = missing(source.module.text, source.attribute.text, own.parent)
             if problem is not None:
@@ -59,9 +62,7 @@ def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 def code_names(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
     """Return the names of Python code in a declaration."""
     root = declaration.tree
-    if not isinstance(
-        root, tree.Implementation | tree.Observation | tree.Policy | tree.BehaviourTree | tree.SceneInstance
-    ):
+    if not isinstance(root, _WITH_CODE):
         return ()
     return tuple(node for node in walk(root) if isinstance(node, tree.PythonAttribute))
 

@@ -11,6 +11,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
@@ -24,8 +25,9 @@ from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.resolve import Resolution
 
 CODE = "several-places"
 Key = tuple[str, str]
@@ -44,14 +46,18 @@ class _Use:
 
 def several_places(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such clause once, with the places of the first variant in which it can never hold."""
-    uses = [use for placed in file.parts() for use in _uses(Site(snapshot, file, placed))]
+    uses = [
+        _use(Site(snapshot, file, placed), *found)
+        for placed in file.parts()
+        for found in _set_places(snapshot, file, placed)
+    ]
     if not uses:
         return
     reported: set[int] = set()
     for scenario in _scenarios(snapshot, file):
         own = (scenario.site.placed, None if scenario.template is None else scenario.template.placed)
         for use in uses:
-            if use.site.placed not in own or id(use) in reported:
+            if not any(use.site.placed is placed for placed in own) or id(use) in reported:
                 continue
             found = _apart(scenario, use.variable)
             if found is not None:
@@ -94,7 +100,31 @@ def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
     return found
 
 
-def _uses(site: Site) -> Iterator[_Use]:
+def _use(site: Site, thing: str, place: tree.Ref) -> _Use:
+    variable = site.target(place)
+    assert variable is not None
+    return _Use(site, thing, place, variable_key(variable))
+
+
+_Place = tuple[str, tree.Ref]
+"""An object, and the set variable that is its place."""
+
+
+@kept_with_key
+def _known_places(_: Resolution) -> list[tuple[_Place, ...]]:
+    """Return the places in the clauses of a declaration, once they have been found."""
+    return []
+
+
+def _set_places(snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration) -> tuple[_Place, ...]:
+    # The kinds of variables cannot change without another resolution.
+    known = _known_places(placed.targets.resolution)
+    if not known:
+        known.append(tuple(_found_places(Site(snapshot, file, placed))))
+    return known[0]
+
+
+def _found_places(site: Site) -> Iterator[_Place]:
     for clauses in clauses_of(site.placed.declaration):
         for phrase in clauses.phrases if site.whole(clauses.node) else ():
             slots = dict(phrase.arguments)
@@ -102,9 +132,9 @@ def _uses(site: Site) -> Iterator[_Use]:
             if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
                 variable = site.target(place)
                 is_set = variable is not None and variable.kind is SymbolKind.SET_VARIABLE
-                # Clauses are walked only where it matters: this runs for every story after each keystroke.
-                if variable is not None and is_set and phrase not in set(_lenient(clauses.node)):
-                    yield _Use(site, thing.path, place, variable_key(variable))
+                # Clauses are walked only where it matters.
+                if is_set and phrase not in set(_lenient(clauses.node)):
+                    yield thing.path, place
 
 
 def _lenient(node: tree.Node) -> Iterator[tree.Node]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
@@ -19,7 +19,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
     """Report unused imports as hints. Libraries and imported files are skipped, because others use their imports."""
     if not has_story(file):
         return
-    used = used_names(file)
+    used = used_names(snapshot, file.document.uri)
     found = [link for link in file.imports if link.problem is None and _is_unused(snapshot, file, link, used)]
     if not found or snapshot.is_imported(file.document.uri):
         return
@@ -30,7 +30,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
         yield Diagnostic(file.document.uri, link.span, Severity.HINT, "unused-import", message, fixes=fixes)
 
 
-def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: frozenset[str]) -> bool:
+def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: Set[str]) -> bool:
     """Return whether a file uses no name of an import. This is uncertain if the imported file has an error.
 
     A graph is imported for its statements, not for names.

@@ -22,12 +22,13 @@ def unused_variable(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnost
     """Report unused variables of templates and quantifiers. If scenarios give them values, the report is a warning."""
     uri = file.document.uri
     candidates: list[tuple[tree.Template, tree.Variable, Span, Span]] = []
-    for placed in file.declarations:
-        facts, root = facts_of(placed.declaration), placed.declaration.tree
+    for placed in file.parts():
+        facts = facts_of(placed.declaration)
         for bound in facts.unused_bounds:
             message = f"no clause uses '{bound.variable.text}': use it, or remove the quantifier"
             yield Diagnostic(uri, bound.variable.span.shifted(placed.offset), Severity.HINT, CODE, message)
-        if isinstance(root, tree.Template):
+        root = placed.declaration.tree
+        if facts.unused and isinstance(root, tree.Template):
             candidates += [
                 (root, variable, variable.name.span.shifted(placed.offset), variable.span.shifted(placed.offset))
                 for variable in facts.unused
@@ -55,8 +56,7 @@ def _used_by_stories(file: FileAnalysis) -> tuple[set[str], set[str]]:
     """Return the variables in the clauses of variants, and all other variables that variants name."""
     spoken_of: set[str] = set()
     named: set[str] = set()
-    for placed in file.declarations:
-        if isinstance(placed.declaration.tree, tree.Story):
-            spoken_of |= facts_of(placed.declaration).clause_paths
-            named |= {reference.ref.path for reference in placed.declaration.references}
+    for placed in file.of(tree.Story):
+        spoken_of |= facts_of(placed.declaration).clause_paths
+        named |= {reference.ref.path for reference in placed.declaration.references}
     return spoken_of, named

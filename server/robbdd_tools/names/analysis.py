@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.resolve import Targets
     from robbdd_tools.syntax.declaration import Declaration
+    from robbdd_tools.syntax.tree import Node
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True, eq=False)
 class PlacedDeclaration:
-    """A declaration at its offset in a document.
+    """A declaration at its offset in a document. It never changes; thousands of them are made after each keystroke.
 
     ``targets`` maps its references to their definitions, without the references that cannot be resolved.
     """
@@ -28,22 +29,24 @@ class PlacedDeclaration:
     declaration: Declaration
     offset: int
     targets: Targets
+    _parts: tuple[PlacedDeclaration, ...] = ()
 
     @property
     def span(self) -> Span:
         """The absolute span of the declaration's text."""
         return Span(self.offset, self.offset + len(self.declaration.text))
 
-    @cached_property
+    @property
     def parts(self) -> tuple[PlacedDeclaration, ...]:
         """The parts of the declaration at their places in the document; the declaration itself if it has no parts."""
         inner = self.declaration.parts
         if not inner:
             return (self,)
-        return tuple(
-            PlacedDeclaration(part.declaration, self.offset + part.offset, targets)
-            for part, targets in zip(inner, self.targets.parts(), strict=True)
-        )
+        if not self._parts:
+            placed = zip(inner, self.targets.parts(), strict=True)
+            start = self.offset
+            self._parts = tuple([PlacedDeclaration(one.declaration, start + one.offset, used) for one, used in placed])
+        return self._parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +70,25 @@ class FileAnalysis:
 
     @cached_property
     def _parts(self) -> tuple[PlacedDeclaration, ...]:
-        return tuple(part for placed in self.declarations for part in placed.parts)
+        found: list[PlacedDeclaration] = []
+        for placed in self.declarations:
+            if placed.declaration.parts:
+                found += placed.parts
+            else:
+                found.append(placed)
+        return tuple(found)
+
+    @cached_property
+    def _by_tree(self) -> Mapping[type[object], list[PlacedDeclaration]]:
+        found: dict[type[object], list[PlacedDeclaration]] = {}
+        for placed in self.declarations:
+            found.setdefault(type(placed.declaration.tree), []).append(placed)
+        return found
+
+    def of(self, *trees: type[Node]) -> Sequence[PlacedDeclaration]:
+        """Return the declarations with certain syntax trees, in text order. Stories are not split into parts."""
+        found = [placed for kind in trees for placed in self._by_tree.get(kind, ())]
+        return found if len(trees) == 1 else sorted(found, key=_offset)
 
     def parts(self, within: Span | None = None) -> Sequence[PlacedDeclaration]:
         """Return the declarations, or their parts, that touch a span of the document; by default, all of them."""

@@ -34,9 +34,12 @@ def _namespaces(names: NameTable) -> tuple[str, ...]:
 
 def namespace_of(file: FileIndex, symbol: Symbol) -> str | None:
     """Return the name of the namespace of a symbol; ``None`` if it has none or if it is ambiguous."""
-    if symbol.namespace != FILE_NAMESPACE:
-        return symbol.namespace
-    return only_namespace(file.names) or _by_use(file).get((symbol.kind, symbol.path))
+    return symbol.namespace if symbol.namespace != FILE_NAMESPACE else implied_namespace(file, symbol.kind, symbol.path)
+
+
+def implied_namespace(file: FileIndex, kind: SymbolKind, path: str) -> str | None:
+    """Return the name of the namespace of a declaration that states none; ``None`` if it is ambiguous."""
+    return only_namespace(file.names) or _by_use(file).get((kind, path))
 
 
 _USED = {"Event": SymbolKind.EVENT, "Task": SymbolKind.TASK}

@@ -115,7 +115,7 @@ class Targets(Mapping["Ref", Definition]):
 
     def parts(self) -> tuple[Targets, ...]:
         """Return the definitions of the references in each part of the declaration."""
-        return tuple(Targets(self._scope, part, self._made) for part in self.resolution.parts)
+        return tuple([Targets(self._scope, part, self._made) for part in self.resolution.parts])
 
     def declarations(self) -> Iterator[tuple[str, int, str]]:
         """Yield for each reference the document that declares its target, the declaration's position, and the path."""
