@@ -62,10 +62,14 @@ class Document:
                 return tuple(starts)
             starts.append(index)
 
+    def line_at(self, offset: int) -> int:
+        """Return the line of an offset in the text."""
+        return bisect_right(self.line_starts, offset) - 1
+
     def position(self, offset: int) -> Position:
         """Return the position of an offset. An offset beyond the text is moved to its end."""
         offset = min(max(offset, 0), len(self.text))
-        line = bisect_right(self.line_starts, offset) - 1
+        line = self.line_at(offset)
         return Position(line, offset - self.line_starts[line])
 
     def offset(self, position: Position) -> int:

@@ -33,7 +33,7 @@ def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
     """Yield the executions of a file that have an IRI and a known variant, in text order."""
     file = snapshot.file(uri)
     variants: dict[str, dict[str, PlacedVariant]] = {}
-    for placed in file.declarations if file is not None else ():
+    for placed in file.of(tree.Execution) if file is not None else ():
         node = placed.declaration.tree
         if file is None or not isinstance(node, tree.Execution):
             continue

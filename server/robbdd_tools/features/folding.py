@@ -48,7 +48,7 @@ def _brackets(file: FileAnalysis) -> Iterator[Fold]:
         inside = _brackets_in(placed.declaration)
         if inside is _NONE:
             continue
-        start = file.document.position(placed.offset).line
+        start = file.document.line_at(placed.offset)
         for first, last in inside.pairs:
             yield Fold(start + first, start + last - 1, "region")
         for last in inside.closed if opened else ():

@@ -118,7 +118,7 @@ def _of_declaration(
 ) -> Coloured:
     """Return the colours of a declaration. They are cached until one of its dependencies changes."""
     known = _known.get(placed.targets.resolution)
-    if known is not None and known.tables is tables:
+    if known is not None and known.tables == tables:
         return known.coloured
     if known is not None and known.paths.isdisjoint(_changed(known.tables, tables)):
         found, paths = known.coloured, known.paths

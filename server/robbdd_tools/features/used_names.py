@@ -71,7 +71,7 @@ def _uses_in(
     resolution = placed.targets.resolution
     known = _known.get(resolution)
     if known is not None:
-        if known.tables is tables:
+        if known.tables == tables:
             return known.uses
         if len(known.tables) == len(tables) and known.paths.isdisjoint(_changed(known.tables, tables)):
             _known[resolution] = _Known(tables, known.paths, known.uses)

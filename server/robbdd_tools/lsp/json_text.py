@@ -76,15 +76,16 @@ class Passages:
         document with the text of the declaration, and the offset of the declaration in it.
         """
         offset, declaration = placed
-        place = document.position(offset)
-        column = place.column and convert.units(document.line_text(place.line)[: place.column])
+        line = document.line_at(offset)
+        start = document.line_starts[line]
+        column = convert.units(document.text[start:offset]) if start < offset else 0
         known = self._kept.get(declaration)
         if known is None or known.convert is not convert or known.column != column or known.key != key:
             # Spaces take one unit in every encoding.
             alone = Document(document.uri, 0, " " * column + declaration.text)
             passage = Passage(joined(map(self._serialise, make(alone, column))))
             known = self._kept[declaration] = _Known(convert, column, key, passage)
-        return known.passage.at(place.line)
+        return known.passage.at(line)
 
 
 def joined(texts: Iterable[str]) -> str:

@@ -6,6 +6,7 @@ by the modifier (``class.story``).
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from weakref import WeakKeyDictionary
@@ -88,32 +89,35 @@ _NUMBERS = {
 
 @dataclass
 class SentTokens:
-    """The tokens that the client has of each document. They are stored so that only changes must be sent."""
+    """The tokens that the client has of each document. They are stored so that only changes must be sent.
+
+    They are arrays of C integers, because those of a long file are joined and compared after each keystroke.
+    """
 
     _count: int = 0
-    _sent: dict[str, tuple[str, Sequence[int]]] = field(default_factory=dict[str, tuple[str, Sequence[int]]])
+    _sent: dict[str, tuple[str, bytes]] = field(default_factory=dict[str, tuple[str, bytes]])
 
-    def whole(self, uri: str, data: Sequence[int]) -> types.SemanticTokens:
+    def whole(self, uri: str, data: array[int]) -> types.SemanticTokens:
         """Return all tokens of a document with a new result identifier."""
-        self._count += 1
-        self._sent[uri] = (str(self._count), data)
-        return types.SemanticTokens(data=data, result_id=str(self._count))
+        return types.SemanticTokens(data=data.tolist(), result_id=self._replace(uri, data))
 
-    def difference(
-        self, uri: str, previous: str, data: Sequence[int]
-    ) -> types.SemanticTokens | types.SemanticTokensDelta:
+    def difference(self, uri: str, previous: str, data: array[int]) -> types.SemanticTokens | types.SemanticTokensDelta:
         """Return the changes since an earlier result. If that result is no longer known, return all tokens."""
-        known, before = self._sent.get(uri, ("", ()))
-        now = self.whole(uri, data)
+        known, before = self._sent.get(uri, ("", b""))
         if known != previous:
-            return now
-        start = _common(before, data)
-        end = min(_common(before[::-1], data[::-1]), min(len(before), len(data)) - start)
-        edit = types.SemanticTokensEdit(
-            start=start, delete_count=len(before) - start - end, data=data[start : len(data) - end]
-        )
-        changed = edit.delete_count or edit.data
-        return types.SemanticTokensDelta(edits=[edit] if changed else [], result_id=now.result_id)
+            return self.whole(uri, data)
+        result = self._replace(uri, data)
+        now, size = data.tobytes(), data.itemsize
+        start = _common(before, now) // size
+        end = min(_common(before, now, from_end=True) // size, min(len(before), len(now)) // size - start)
+        deleted, inserted = len(before) // size - start - end, data[start : len(data) - end].tolist()
+        edits = [types.SemanticTokensEdit(start=start, delete_count=deleted, data=inserted)]
+        return types.SemanticTokensDelta(edits=edits if deleted or inserted else [], result_id=result)
+
+    def _replace(self, uri: str, data: array[int]) -> str:
+        self._count += 1
+        self._sent[uri] = (str(self._count), data.tobytes())
+        return str(self._count)
 
     def forget(self, uri: str) -> None:
         """Drop the tokens of a closed document."""
@@ -136,32 +140,63 @@ def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> 
     return data
 
 
+@dataclass(frozen=True, slots=True)
+class _Encoded:
+    """The encoding of a piece of a document: the numbers of its tokens without the place of the first one.
+
+    The places of the first and the last token have lines counted from the piece's first line. A token on that line has
+    a column counted from the start of the piece.
+    """
+
+    convert: Converter
+    first: tuple[int, int]
+    last: tuple[int, int]
+    data: array[int]
+
+
 class Encoder:
     """Encodes whole documents. The encodings of unchanged pieces are cached."""
 
     def __init__(self) -> None:
-        self._kept: WeakKeyDictionary[Coloured, tuple[Converter, list[int]]] = WeakKeyDictionary()
+        self._kept: WeakKeyDictionary[Coloured, _Encoded] = WeakKeyDictionary()
 
-    def whole(self, convert: Converter, document: Document, pieces: Sequence[tuple[int, Coloured]]) -> list[int]:
+    def whole(self, convert: Converter, document: Document, pieces: Sequence[tuple[int, Coloured]]) -> array[int]:
         """Return the encoded tokens of a document, which are given as pieces with their offsets."""
-        data: list[int] = []
-        line, column = 0, 0
+        data = array("I")
+        starts, line, column = document.line_starts, 0, 0
         for offset, piece in pieces:
             if not piece.tokens:
                 continue
-            start = convert.position(document, offset + piece.tokens[0].span.start)
+            above = document.line_at(offset)
+            begin = convert.units(document.text[starts[above] : offset]) if starts[above] < offset else 0
             known = self._kept.get(piece)
-            if known is None or known[0] is not convert:
-                # Only the place of a piece's first token depends on the preceding pieces.
-                placed = [
-                    Token(token.span.shifted(offset), token.concept, token.is_declaration) for token in piece.tokens
-                ]
-                known = self._kept[piece] = (convert, encoded(convert, document, placed)[2:])
-            data += (start.line - line, start.character - (column if start.line == line else 0))
-            data += known[1]
-            last = convert.position(document, offset + piece.tokens[-1].span.start)
-            line, column = last.line, last.character
+            if known is None or known.convert is not convert:
+                known = self._kept[piece] = _encoded_piece(convert, document, (offset, piece), (above, begin))
+            down, right = known.first
+            right += 0 if down else begin
+            down += above
+            data.append(down - line)
+            data.append(right - (column if down == line else 0))
+            data.extend(known.data)
+            line, column = known.last
+            column += 0 if line else begin
+            line += above
         return data
+
+
+def _encoded_piece(
+    convert: Converter, document: Document, piece: tuple[int, Coloured], start: tuple[int, int]
+) -> _Encoded:
+    offset, coloured_text = piece
+    tokens = [Token(one.span.shifted(offset), one.concept, one.is_declaration) for one in coloured_text.tokens]
+
+    def place(token: Token) -> tuple[int, int]:
+        position = convert.position(document, token.span.start)
+        line = position.line - start[0]
+        return line, position.character - (0 if line else start[1])
+
+    data = array("I", encoded(convert, document, tokens)[2:])
+    return _Encoded(convert, place(tokens[0]), place(tokens[-1]), data)
 
 
 def register_tokens(server: RobbddServer) -> None:
@@ -171,8 +206,8 @@ def register_tokens(server: RobbddServer) -> None:
 
     encoder = Encoder()
 
-    async def data_of(ls: RobbddServer, uri: str) -> list[int]:
-        def find(snapshot: Snapshot) -> list[int]:
+    async def data_of(ls: RobbddServer, uri: str) -> array[int]:
+        def find(snapshot: Snapshot) -> array[int]:
             return encoder.whole(ls.convert, document_of(snapshot, uri), coloured(snapshot, uri))
 
         return await ls.analyse(find)
@@ -199,13 +234,14 @@ def register_tokens(server: RobbddServer) -> None:
         return types.SemanticTokens(data=await ls.analyse(find))
 
 
-def _common(one: Sequence[int], other: Sequence[int]) -> int:
-    """Return the length of the common prefix of two results."""
-    same, different = 0, min(len(one), len(other)) + 1
-    while different - same > 1:
-        middle = (same + different) // 2
-        if one[same:middle] == other[same:middle]:
-            same = middle
+def _common(one: bytes, other: bytes, *, from_end: bool = False) -> int:
+    """Return the length of the common beginning, or the common end, of two results. It is found by bisection."""
+    low, high = 0, min(len(one), len(other))
+    while low < high:
+        middle = (low + high + 1) // 2
+        if from_end:
+            is_same = one[len(one) - middle : len(one) - low] == other[len(other) - middle : len(other) - low]
         else:
-            different = middle
-    return same
+            is_same = one[low:middle] == other[low:middle]
+        low, high = (middle, high) if is_same else (low, middle - 1)
+    return low
