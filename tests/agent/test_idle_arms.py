@@ -88,7 +88,10 @@ def test_an_arm_that_holds_something_stays_where_it_is() -> None:
 
 @pytest.mark.physics
 def test_a_failed_grip_names_what_the_arm_has_touched_on_its_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(IdleArms, "park_all", lambda *_: None)
+    def stay(*_: object) -> None:
+        pass
+
+    monkeypatch.setattr(IdleArms, "park_all", stay)
     run = executed((PANDA, KINOVA), bring(PANDA, BENCH_WS, "t:a"), bring(KINOVA, OTHER_WS, "t:b"), seed=2)
     assert run.failure(1).startswith("gripper missed env:cube1 at ")
     assert run.failure(1).endswith("arm touches env:panda")
