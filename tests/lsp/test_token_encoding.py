@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 
 from hypothesis import given
@@ -34,6 +35,7 @@ def test_differences_lead_to_the_tokens_of_the_whole_document(
 ) -> None:
     project, convert, encoder, sent = Project(), Converter(encoding), Encoder(), SentTokens()
     history, shown, result = [text], list[int](), ""
+    data = array("I")
     for version, edit in enumerate([Edit(0, "replace", 0, 0, ""), *edits]):
         project.open(URI, version, edit.apply(history))
         snapshot = project.snapshot()

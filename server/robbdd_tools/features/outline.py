@@ -203,10 +203,11 @@ def _own_pieces(declaration: Declaration) -> tuple[tuple[Item, ...], tuple[Outli
         if (items := _own_items(part.declaration))
     )
     symbol = declaration.symbols[0]
-    spans = [symbol.extent, symbol.span]
-    for piece in inner:
-        spans += [item.extent.shifted(piece.offset) for item in (piece.items[0], piece.items[-1])]
-    return (_item(symbol, (), spans),), inner
+    # Numbers instead of spans: a story has thousands of scenarios.
+    ends = [(piece.offset, item.extent) for piece in inner for item in (piece.items[0], piece.items[-1])]
+    first = min([offset + extent.start for offset, extent in ends], default=symbol.extent.start)
+    last = max([offset + extent.end for offset, extent in ends], default=symbol.extent.end)
+    return (_item(symbol, (), [symbol.extent, symbol.span, Span(first, last)]),), inner
 
 
 @kept_with_key
