@@ -87,3 +87,18 @@ class HostileFolder:
         path.write_text(
             f"with open({str(self._log)!r}, 'a') as log:\n    log.write({name!r} + '\\n')\n", encoding="utf-8"
         )
+
+
+def write_ranged_study(folder: Path) -> None:
+    """Write ``ranged.study`` next to a copy of the pick-and-place example: one scenario with a range of a horizon."""
+    model = (folder / "pickplace.bdd").read_text(encoding="utf-8")
+    for old, new in (
+        ("    var goal\n", "    var goal\n    var shortly\n"),
+        ("after <evt-place-end>)", "<shortly> seconds after <evt-place-end>)"),
+        ("            variation:\n", "            variation:\n var <pick-place.shortly>: { 0.1 }\n"),
+    ):
+        assert old in model
+        model = model.replace(old, new)
+    (folder / "ranged.bdd").write_text(model, encoding="utf-8")
+    one = 'where: "thing=cube0 and goal=left_ws" factor var <shortly>: from 0.1 to 0.2 design: grid 2'
+    (folder / "ranged.study").write_text(f'import "ranged.bdd" Study ranged {{ {one} }}', encoding="utf-8")

@@ -62,6 +62,7 @@ HOMES = {
     "rich": {"commands"},
     "shtab": {"commands"},
     "scipy": {"campaign"},
+    "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
 }
 # Packages of one rank that may import each other; all others of one rank may not.

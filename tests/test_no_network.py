@@ -21,6 +21,7 @@ from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 from fork_kit import ROBBDD, ROBBDD_LSP
 from kit import EXAMPLES, command_names
 from lsp_kit import ASKED, PATIENCE
+from planting_kit import write_ranged_study
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.ask.query import BadQuery, run_query
 from robbdd_tools.graph.rdf.serialize import parse
@@ -67,6 +68,7 @@ COMMANDS = (
     "study outcomes one.study --store studies",
     "study margins one.study --clause at-goal --by thing --store studies",
     "study plan --width 0.05",
+    "falsify ranged.study --budget 1 --method uniform",
     "mutate pickplace.bdd --first 1 --fault no-grip",
     "query pickplace.bdd --name variants",
     "steps pickplace.bdd",
@@ -112,6 +114,7 @@ def folder(tmp_path: Path, contacts: tuple[str, list[str]]) -> Path:
     shutil.copytree(EXAMPLES / "pickplace", models)
     study = 'import "pickplace.bdd" Study one { first: 1 }'
     (models / "one.study").write_text(study, encoding="utf-8")
+    write_ranged_study(models)
     texts = {
         "robbdd.toml": 'shapes = ["shapes.ttl", "service.ttl"]\ncontext-hosts = ["127.0.0.1"]\n',
         "shapes.ttl": SHAPES,

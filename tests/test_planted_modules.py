@@ -16,7 +16,7 @@ from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 from kit import command_names
 from lsp_kit import ASKED, PATIENCE
-from planting_kit import HostileFolder, importable_names
+from planting_kit import HostileFolder, importable_names, write_ranged_study
 from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.isolation import EXPOSED
@@ -42,6 +42,7 @@ COMMANDS = (
     "study outcomes one.study --plot out/outcomes.svg --store out/studies",
     "study margins one.study --clause at-goal --by thing --store out/studies",
     "study plan --width 0.05",
+    "falsify ranged.study --budget 1 --method uniform",
     "mutate pickplace.bdd --first 1 --fault no-grip --json out/faults.json",
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
@@ -110,6 +111,7 @@ def test_no_command_imports_a_planted_module(
     hostile = HostileFolder(tmp_path)
     (hostile.models / "event.ttl").write_text(AN_EVENT, encoding="utf-8")
     (hostile.models / "one.study").write_text(A_STUDY, encoding="utf-8")
+    write_ranged_study(hostile.models)
     start = hostile.models if inside else hostile.root
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in commands:

@@ -25,6 +25,7 @@ SECTIONS = {
             "campaigns",
             "comparing",
             "mutate",
+            "falsify",
             "continuous-integration",
             "editors",
             "debugging",

@@ -22,6 +22,7 @@ from robbdd_tools.catalog.registry import problems_of_words
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
+from robbdd_tools.commands.falsify_arguments import add_falsify
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.mutate_arguments import add_mutate
 from robbdd_tools.commands.output import fail, print_note
@@ -142,6 +143,8 @@ def argument_parser() -> argparse.ArgumentParser:
 
     mutated = commands.add_parser("mutate", help="give the simulated robots faults, and show which clauses notice them")
     add_mutate(mutated)
+    searched = commands.add_parser("falsify", help="search the ranges of a .study file for a failure near to nominal")
+    add_falsify(searched)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", nargs="?", type=Path)
@@ -184,7 +187,7 @@ def argument_parser() -> argparse.ArgumentParser:
     completion = commands.add_parser("completion", help="print a script that completes robbdd's arguments in a shell")
     completion.add_argument("shell", choices=SHELLS)
     completion.set_defaults(command=_completion)
-    _allow_refusal(run, *stored, *studies, mutated, view, dap)
+    _allow_refusal(run, *stored, *studies, mutated, searched, view, dap)
     _allow_hosts(check, graph, gherkin, run, mutated, imported, query)
     return parser
 

@@ -29,9 +29,9 @@ def design_points(design: Design, ranges: Sequence[Range], seed: int) -> Points:
     names = tuple(one.variable.text for one in ranges)
     if design.kind == GRID:
         shares = [number / (design.size - 1) for number in range(design.size)]
-        return Points(names, levels=tuple(tuple(_scaled(one, share) for share in shares) for one in ranges))
+        return Points(names, levels=tuple(tuple(value_at(one, share) for share in shares) for one in ranges))
     unit = _unit_points(design, len(ranges), seed)
-    return Points(names, tuple(tuple(map(_scaled, ranges, row)) for row in unit))
+    return Points(names, tuple(tuple(map(value_at, ranges, row)) for row in unit))
 
 
 def _unit_points(design: Design, dimensions: int, seed: int) -> Sequence[Sequence[float]]:
@@ -46,7 +46,7 @@ def _unit_points(design: Design, dimensions: int, seed: int) -> Sequence[Sequenc
     return kind(dimensions, seed=dice).random(design.size).tolist()
 
 
-def _scaled(one: Range, share: float) -> float:
+def value_at(one: Range, share: float) -> float:
     """Return the value at a share of a range, without digits that mean nothing."""
     width = one.high - one.low
     value = round(one.low + share * width, DIGITS - floor(log10(width)))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -10,6 +11,8 @@ from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.gherkin.variations import bindings, count
 from robbdd_tools.gherkin.where import variable_names
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Product, Table, Variant
+from robbdd_tools.protocol.specs import ScenarioSpec, plain_name
+from robbdd_tools.run.seeds import scenario_seed
 
 MOST_SCENARIOS = 1_000_000
 """Limit of the scenarios of a variant whose values are points: they are in memory."""
@@ -85,3 +88,18 @@ def _rows(
         for row in rows:
             values, found = iter(former), dict(zip(columns, row, strict=True))
             yield tuple(found[place] if place in found else next(values) for place in range(len(variation.variables)))
+
+
+def common_seeds(variables: Sequence[str], seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
+    """Return a function that gives an execution a seed that does not depend on the values of some variables.
+
+    Then the executions at all points differ in these values only. A seed of the scene (``has config seed``) and that of
+    a behaviour tree's execution stay as they are. ``variables`` are names as in users' code (``plain_name``).
+    """
+
+    def seeded(spec: ScenarioSpec) -> ScenarioSpec:
+        others = {name: value for name, value in spec.values.items() if plain_name(name) not in variables}
+        key = f"{spec.variant} {json.dumps(others, sort_keys=True)}"
+        return replace(spec, seed=scenario_seed(seed, key, 1, spec.repetition))
+
+    return seeded

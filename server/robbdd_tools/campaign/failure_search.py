@@ -1,0 +1,175 @@
+"""Search a box for a failure with as few executions as possible, and move the failure as near to nominal as possible.
+
+Points are in the unit box of the ranges. The search is by CMA-ES (Hansen 2016, *The CMA Evolution Strategy*), or by
+uniform or quasi-random points to compare it with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import dist
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.campaign.rates import StatisticsNotInstalled
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+CMA_ES, SOBOL, UNIFORM = "cma-es", "sobol", "uniform"
+METHODS = (CMA_ES, SOBOL, UNIFORM)
+SPREAD = 0.3
+"""Initial standard deviation of CMA-ES, as a share of each range: the box is about three of them wide."""
+GENERATION = 8
+"""Points of a generation of the other methods."""
+MOST_SUBSETS = 70
+"""So many sets of changed variables of one size are tried at most."""
+ROUNDS, PARTS = 3, 8
+"""The way from nominal to the failure is divided into parts, and the part with the first failure again."""
+
+Point = tuple[float, ...]
+
+
+class SearchNotInstalled(RobbddError):
+    """The optimiser is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__("the optimiser is not installed: pip install 'robbdd-tools[search]'")
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """The executions at a point: their smallest robustness, and whether a clause is violated in one of them."""
+
+    point: Point
+    robustness: float
+    fails: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The result of a search.
+
+    - ``first``: the first failure that was found, after ``searched`` points. ``None`` if there was none.
+    - ``nearest``: a failure with the fewest changed variables, as near to nominal as found; ``passing`` is the
+      nearest point between both that does not fail. ``evaluated`` counts all points.
+    """
+
+    first: Evaluation | None
+    nearest: Evaluation | None
+    passing: Point
+    searched: int
+    evaluated: int
+
+
+Evaluate = Callable[[Sequence[Point]], Sequence[Evaluation]]
+
+
+def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = CMA_ES) -> Failure:
+    """Search for a failure with at most ``budget`` points, then shrink it with some more.
+
+    The same seed gives the same points. Raises ``SearchNotInstalled`` and ``StatisticsNotInstalled``.
+    """
+    searched = 0
+    for generation in _generations(evaluate, nominal, budget, seed, method):
+        for number, one in enumerate(generation, start=1):
+            if one.fails:
+                found = Failure(one, one, nominal, searched + number, searched + len(generation))
+                return shrink(evaluate, nominal, found)
+        searched += len(generation)
+    return Failure(None, None, nominal, searched, searched)
+
+
+def shrink(evaluate: Evaluate, nominal: Point, failure: Failure) -> Failure:
+    """Return a failure with fewer changed variables, nearer to nominal."""
+    assert failure.first is not None
+    best, evaluated = failure.first, failure.evaluated
+    for points in _subsets(nominal, failure.first.point):
+        tried = evaluate(points)
+        evaluated += len(points)
+        failing = [one for one in tried if one.fails]
+        if failing:
+            best = min(failing, key=lambda one: dist(one.point, nominal))
+            break
+    low, high = 0.0, 1.0
+    end = best.point
+    for _ in range(ROUNDS):
+        shares = [low + (high - low) * part / PARTS for part in range(1, PARTS)]
+        tried = evaluate([_between(nominal, end, share) for share in shares])
+        evaluated += len(tried)
+        first = next((index for index, one in enumerate(tried) if one.fails), None)
+        if first is None:
+            low = shares[-1]
+            continue
+        best = tried[first]
+        high = shares[first]
+        low = shares[first - 1] if first else low
+    return replace(failure, nearest=best, passing=_between(nominal, end, low), evaluated=evaluated)
+
+
+def _subsets(nominal: Point, failing: Point) -> Iterator[list[Point]]:
+    """Yield the points that change only some variables to their failing values, the fewest first."""
+    changed = [index for index, value in enumerate(failing) if value != nominal[index]]
+    for size in range(1, len(changed)):
+        kept = list(combinations(changed, size))
+        if len(kept) <= MOST_SUBSETS:
+            yield [tuple(failing[i] if i in some else value for i, value in enumerate(nominal)) for some in kept]
+
+
+def _between(nominal: Point, failing: Point, share: float) -> Point:
+    return tuple(one + share * (other - one) for one, other in zip(nominal, failing, strict=True))
+
+
+def _generations(
+    evaluate: Evaluate, nominal: Point, budget: int, seed: int, method: str
+) -> Iterator[Sequence[Evaluation]]:
+    """Yield evaluated points, until the budget is used."""
+    import numpy as np
+
+    rest = budget
+    if method == CMA_ES:
+        yield from _evolved(evaluate, nominal, budget, seed)
+        return
+    if method == SOBOL:
+        try:
+            from scipy.stats import qmc
+        except ImportError as error:
+            raise StatisticsNotInstalled from error
+        points: FloatArray = qmc.Sobol(len(nominal), seed=np.random.default_rng(seed)).random_base2(
+            max(1, (budget - 1).bit_length())
+        )
+    else:
+        points = np.random.default_rng(seed).random((budget, len(nominal)))
+    for first in range(0, budget, GENERATION):
+        chosen = points[first : min(first + GENERATION, budget)]
+        yield evaluate([tuple(map(float, row)) for row in chosen])
+        rest -= len(chosen)
+
+
+def _evolved(evaluate: Evaluate, nominal: Point, budget: int, seed: int) -> Iterator[Sequence[Evaluation]]:
+    import numpy as np
+
+    try:
+        from cmaes import CMA  # pyright: ignore[reportMissingTypeStubs] -- cmaes ships types without a marker
+    except ImportError as error:
+        raise SearchNotInstalled from error
+    dimensions = len(nominal)
+    # CMA-ES needs two dimensions; a second one without effect does no harm.
+    mean = np.array([*nominal, 0.5][: max(2, dimensions)])
+    bounds = np.array([[0.0, 1.0]] * len(mean))
+    search = CMA(mean=mean, sigma=SPREAD, bounds=bounds, seed=seed % 2**32)
+    used = 0
+    while used < budget:
+        asked = [search.ask() for _ in range(min(search.population_size, budget - used))]
+        found = evaluate([tuple(map(float, point[:dimensions])) for point in asked])
+        used += len(found)
+        yield found
+        if len(asked) < search.population_size:
+            return
+        search.tell([(point, one.robustness) for point, one in zip(asked, found, strict=True)])
+        if search.should_stop():
+            # A local minimum without a failure: begin again elsewhere.
+            start = np.random.default_rng((seed, used)).random(len(mean))
+            search = CMA(mean=start, sigma=SPREAD, bounds=bounds, seed=(seed + used) % 2**32)
