@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench study docs playground package publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench study docs playground package release publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -116,6 +116,19 @@ package: $(READY) $(CLIENT_READY)
 	$(BIN)/python -m build --outdir dist .
 	cd $(CLIENT) && npm run --silent package
 	cp $(CLIENT)/robbdd-workbench.vsix dist/
+
+# All that a release publishes, in dist/: what `make package` makes, the site, and a list of the parts of each (CycloneDX).
+# The list of the extension includes the tools that it is built with, since its program is a bundle.
+release: export SOURCE_DATE_EPOCH := $(shell git log -1 --format=%ct 2>/dev/null || echo 1577836800)
+release: package docs
+	tar --sort=name --mtime=@$$SOURCE_DATE_EPOCH --owner=0 --group=0 --numeric-owner -cf - -C build site | gzip -n > dist/site.tar.gz
+	rm -rf build/shipped build/listing
+	$(PYTHON) -m venv build/shipped
+	build/shipped/bin/pip install --quiet --disable-pip-version-check --find-links dist robbdd-tools
+	$(PYTHON) -m venv build/listing
+	build/listing/bin/pip install --quiet --disable-pip-version-check 'cyclonedx-bom==7.5.0'
+	build/listing/bin/cyclonedx-py environment --output-reproducible --output-file dist/robbdd-tools.cdx.json build/shipped/bin/python
+	cd $(CLIENT) && npx --yes @cyclonedx/cyclonedx-npm@6.0.1 --output-reproducible --output-file ../dist/robbdd-workbench.cdx.json
 
 # Uploads dist/ as it is. Wheel first: the extension installs the server of its own version. CONTRIBUTING.md tells the tokens.
 publish:

@@ -30,7 +30,7 @@ SECTIONS = {
             "editors",
             "debugging",
         ),
-        *("gherkin", "pytest", "python", "own-words", "troubleshooting"),
+        *("gherkin", "pytest", "python", "own-words", "assistants/SKILL", "assistants/language", "troubleshooting"),
     ),
     "Examples": (),
     "Reference": (
