@@ -252,6 +252,20 @@ def goals(action: str, states: dict[str, int], received: float, *, accepted: flo
     return Message(f"/{action}/_action/status", received, "action_msgs/msg/GoalStatusArray", make)
 
 
+def diagnostics(states: dict[str, tuple[int, str]], received: float) -> Message:
+    """The level and the message of each component."""
+
+    def make(store: Any) -> Any:
+        kind = store.types["diagnostic_msgs/msg/DiagnosticStatus"]
+        found = [
+            kind(level=level, name=name, message=words, hardware_id="", values=[])
+            for name, (level, words) in states.items()
+        ]
+        return store.types["diagnostic_msgs/msg/DiagnosticArray"](header=header(store, received, ""), status=found)
+
+    return Message("/diagnostics", received, "diagnostic_msgs/msg/DiagnosticArray", make)
+
+
 def _pose(store: Any, place: Sequence[float]) -> Any:
     types = store.types
     return types["geometry_msgs/msg/Pose"](

@@ -9,7 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from logs.bags import Message, detected, detected_alone, goals, header, models, pose, poses, transform, write
+from logs.bags import (
+    Message,
+    detected,
+    detected_alone,
+    diagnostics,
+    goals,
+    header,
+    models,
+    pose,
+    poses,
+    transform,
+    write,
+)
 from robbdd_tools.logs.log_contents import LogContents
 from robbdd_tools.logs.open_log import read_log
 
@@ -187,3 +199,18 @@ def test_a_topic_whose_messages_do_not_fit_their_type_is_named(tmp_path: Path) -
     base.close()
     with pytest.raises(Exception, match=r"'/seen' \(vision_msgs/msg/Detection3DArray\)"):
         read_log(folder)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_diagnostics_report_changed_levels_and_messages(kind: str, tmp_path: Path) -> None:
+    states = [(1.0, 0, "ready"), (2.0, 0, "ready"), (3.0, 2, "no vacuum"), (4.0, 2, ""), (5.0, 0, "pick_end")]
+    messages = [diagnostics({"gripper": (level, words)}, time) for time, level, words in states]
+    found = read(tmp_path, messages, kind)
+    assert [(one.topic, one.text, one.time) for one in found.texts] == [
+        ("/diagnostics/gripper", "gripper ok", 0.0),
+        ("/diagnostics/gripper", "ready", 0.0),
+        ("/diagnostics/gripper", "gripper error", 2.0),
+        ("/diagnostics/gripper", "no vacuum", 2.0),
+        ("/diagnostics/gripper", "gripper ok", 4.0),
+        ("/diagnostics/gripper", "pick_end", 4.0),
+    ]

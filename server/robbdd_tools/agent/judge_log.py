@@ -76,7 +76,7 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
     faults: set[str] = set()
     verdicts: list[ClauseJudged] = []
     for clause in spec.clauses:
-        verdict = _verdict(clause, found.evidence, spec)
+        verdict = verdict_on(clause, found.evidence, spec)
         if verdict.fault is not None and verdict.fault.id not in faults:
             faults.add(verdict.fault.id)
             yield UserCodeFailed(0, verdict.fault)
@@ -101,7 +101,8 @@ def _contents(request: LogRequest) -> LogContents:
     return replace(contents, texts=tuple(texts))
 
 
-def _verdict(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Verdict:
+def verdict_on(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Verdict:
+    """Return the verdict on a clause of a scenario by the evidence of a log."""
     statement, trace = statement_of(clause), evidence.trace
     if isinstance(statement, EventOccurrence):
         return occurred(trace, statement.event, iteration_of(clause))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from robbdd_tools.logs.action_goals import ROS1_STATES, ROS2_STATES, ActionGoals, GoalState
+from robbdd_tools.logs.diagnostics import Diagnostics
 from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, Truths
 from robbdd_tools.logs.pose_lists import PoseLists
@@ -31,6 +32,7 @@ class RosContents:
         self.offsets: list[int] = []
         self.lists = PoseLists()
         self.goals = ActionGoals()
+        self._diagnostics = Diagnostics()
         self.remarks: list[str] = []
         self._received = TrackBuilder()
         """Poses without headers, by the time of reception."""
@@ -104,6 +106,13 @@ class RosContents:
     def text(self, topic: str, received: int, message: Any) -> None:
         """Take a text, which may report an event."""
         self.texts.append((received, topic, str(message.data)))
+
+    def diagnostics(self, topic: str, received: int, message: Any) -> None:
+        """Take the changes of components' states as texts on ``topic/NAME``."""
+        for one in message.status:
+            level = one.level[0] if isinstance(one.level, bytes) else int(one.level)
+            for words in self._diagnostics.texts(topic, str(one.name), level, str(one.message)):
+                self.texts.append((received, f"{topic}/{one.name}", words))
 
     def truth(self, topic: str, received: int, message: Any) -> None:
         """Take a truth value."""
@@ -202,6 +211,7 @@ READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
     "gazebo_msgs/msg/ContactsState": RosContents.contacts,
     "ros_gz_interfaces/msg/Contacts": RosContents.contacts,
     "std_msgs/msg/String": RosContents.text,
+    "diagnostic_msgs/msg/DiagnosticArray": RosContents.diagnostics,
     "std_msgs/msg/Bool": RosContents.truth,
     "bdd_ros2_interfaces/msg/Trinary": RosContents.trinary,
     "bdd_ros2_interfaces/msg/TrinaryStamped": RosContents.trinary,
