@@ -5,9 +5,14 @@ import type { Server } from "./client";
 import { RUNNABLE, modelFor } from "./models";
 import { complain } from "./notices";
 import type { RunMonitor } from "./runs/monitor";
+import { isRecord } from "./values";
 
 export const TYPE = "robbdd";
 const HOST = "127.0.0.1";
+/** The adapter's event at the end of a run that it has stored. */
+const STORED = "robbdd/stored";
+/** `FileChangeType.Created` of the protocol. */
+const CREATED = 1;
 /** A name in a model, or a path of names. */
 const NAME = /[\w-]+(\.[\w-]+)*/;
 
@@ -30,6 +35,12 @@ export class Debugging implements vscode.Disposable {
           const range = document.getWordRangeAtPosition(position, NAME);
           return range && new vscode.EvaluatableExpression(range);
         },
+      }),
+      // Whether or not the editor watches the files of the folder.
+      vscode.debug.onDidReceiveDebugSessionCustomEvent(({ event, body, session }) => {
+        if (event === STORED && session.type === TYPE && isRecord(body) && typeof body["results"] === "string") {
+          this.server.notify("workspace/didChangeWatchedFiles", { changes: [{ uri: body["results"], type: CREATED }] });
+        }
       }),
       runs.onMessage(({ uri, message }) => {
         if (message.type === "DebuggerAwaited") {

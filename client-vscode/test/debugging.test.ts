@@ -60,9 +60,10 @@ test("the paused scene is shown on request and follows each pause", async () => 
   await command("robbdd.showPausedScene");
   assert.equal(editor.panels.length, 0);
   const asked: string[] = [];
-  const customRequest = (name: string) => {
-    asked.push(name);
-    return Promise.resolve({ ...TRACE, duration: asked.length, paused_at: asked.length });
+  const customRequest = (request: string) => {
+    asked.push(request);
+    const name = `t:fetch -- ${asked.length}`;
+    return Promise.resolve({ ...TRACE, scenario: { ...SCENARIO, name }, duration: asked.length, paused_at: asked.length });
   };
   const session = { type: "robbdd", configuration: { request: "launch" }, customRequest };
   const tracker = editor.track(session) as { onDidSendMessage: (message: unknown) => void };
@@ -80,6 +81,19 @@ test("the paused scene is shown on request and follows each pause", async () => 
   const selected = () => panel?.posted.map((posted) => (posted as { clause?: unknown }).clause).at(-1);
   await until(() => selected() !== undefined);
   assert.equal(selected(), 2, "the clause at which it paused is selected");
+  assert.equal(panel?.title, "Paused fetch -- 2", "and the panel names the scenario");
+});
+
+test("the server learns of a debugged run that was stored, also without a watcher of files", async () => {
+  openWindow();
+  await command("robbdd.runFile");
+  const session = { type: "robbdd" };
+  const uri = "file:///cell/.robbdd/runs/1/results.json";
+  editor.debugEvent({ event: "robbdd/stored", body: { results: uri }, session });
+  editor.debugEvent({ event: "robbdd/stored", body: {}, session });
+  editor.debugEvent({ event: "other", body: { results: uri }, session });
+  editor.debugEvent({ event: "robbdd/stored", body: { results: uri }, session: { type: "python" } });
+  assert.deepEqual(client().notified, [["workspace/didChangeWatchedFiles", { changes: [{ uri, type: 1 }] }]]);
 });
 
 const LENS = { uri: FILE, scenario: "t:fetch", variant: "t:fetch" };

@@ -27,6 +27,8 @@ export class LanguageClient {
 
   /** Commands of the server that it was sent. */
   readonly executed: string[] = [];
+  /** Notifications that the server was sent. */
+  readonly notified: [method: string, params: unknown][] = [];
   /** What hears of the server's notifications, by the method. */
   readonly listeners = new Map<string, (notification: unknown) => void>();
   /** Version that servers state; undefined for none. */
@@ -87,7 +89,8 @@ export class LanguageClient {
     return LanguageClient.answers.get(method)?.(params as never);
   }
 
-  sendNotification(): Promise<void> {
+  sendNotification(method: string, params: unknown): Promise<void> {
+    this.notified.push([method, params]);
     return Promise.resolve();
   }
 

@@ -142,6 +142,7 @@ class Editor {
   /** Completes the configuration of a session, and listens to its adapter. */
   resolve: Handler = () => undefined;
   track: Handler = () => undefined;
+  debugEvent: Handler = () => undefined;
   session: unknown;
   /** Describes the debug adapter of a session. */
   adapter: Handler = () => undefined;
@@ -354,6 +355,10 @@ export const debug = {
   },
   registerDebugConfigurationProvider: (_: string, provider: { resolveDebugConfiguration: Handler }) => {
     editor.resolve = provider.resolveDebugConfiguration;
+    return ended;
+  },
+  onDidReceiveDebugSessionCustomEvent: (hear: Handler) => {
+    editor.debugEvent = hear;
     return ended;
   },
   registerDebugAdapterTrackerFactory: (_: string, factory: { createDebugAdapterTracker: Handler }) => {

@@ -115,7 +115,7 @@ class Client:
     def launch(self, program: Path, *lines: int, filters: tuple[str, ...] = (), **arguments: object) -> list[Any]:
         """Debug a scenario, with breakpoints on some lines of its file; return the answers to these."""
         self.ask("initialize", adapterID="robbdd", linesStartAt1=True, pathFormat="path")
-        self.ask("launch", program=str(program), noStore=True, **arguments)
+        self.ask("launch", program=str(program), **{"noStore": True, **arguments})
         self.event("initialized")
         stated = [{"line": line} for line in lines]
         found = self.ask("setBreakpoints", source={"path": str(program)}, breakpoints=stated)

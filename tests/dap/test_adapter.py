@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import socket
 import subprocess
@@ -18,6 +19,7 @@ from commands.test_debug import Debugger
 from dap.clients import Client
 from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.run.debugging import free_port
 
 pytestmark = [pytest.mark.physics, pytest.mark.usefixtures("forks")]
@@ -48,9 +50,10 @@ def stopped(client: Client) -> tuple[str, str]:
     return body["reason"], body.get("text", "")
 
 
-def test_a_breakpoint_on_a_clause_stops_with_margins_poses_and_events(client: Client) -> None:
+def test_a_breakpoint_on_a_clause_stops_with_margins_poses_and_events(client: Client, tmp_path: Path) -> None:
     goal, untouched = line_of("at-goal:"), line_of("goal-untouched:")
-    found = client.launch(MODEL, untouched, goal, line_of("Then:"), line_of("import"), **CHOICE)
+    kept = {**CHOICE, "noStore": False, "store": str(tmp_path / "store")}
+    found = client.launch(MODEL, untouched, goal, line_of("Then:"), line_of("import"), **kept)
     assert [one["verified"] for one in found] == [True, True, False, False]
     assert [one.get("message") for one in found[2:]] == ["there is no clause on this line"] * 2
     assert stopped(client) == ("breakpoint", "goal-untouched opens")
@@ -76,6 +79,9 @@ def test_a_breakpoint_on_a_clause_stops_with_margins_poses_and_events(client: Cl
     held = client.ask("evaluate", expression="panda.grips", context="hover")
     assert held["result"] == "nothing"
     client.ask("continue", threadId=1)
+    results = uri_to_path(client.event("robbdd/stored")["results"])
+    assert results is not None
+    assert json.loads(results.read_text(encoding="utf-8"))["complete"]
     assert client.event("exited") == {"exitCode": 0}
     client.event("terminated")
     assert "✔ +50 mm" in client.output
@@ -134,7 +140,7 @@ def test_a_condition_chooses_the_moment(client: Client) -> None:
 def test_a_filter_stops_at_a_moment_of_any_clause(client: Client) -> None:
     client.launch(MODEL, filters=("opens",), **CHOICE)
     reason, text = stopped(client)
-    assert reason == "exception"
+    assert reason == "breakpoint"
     assert "at-source opens" in text
 
 

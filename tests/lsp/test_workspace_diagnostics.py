@@ -59,19 +59,21 @@ def _cycle(folder: Path, *names: str) -> tuple[str, ...]:
 
 
 class _Server:
-    """What a survey asks of its server; it is its own workspace, and without errors of users' code."""
+    """What a survey asks of its server; it is its own workspace, and nobody's code is in it."""
 
     pulls = True
     convert = Converter()
     project = Project()
 
     def __init__(self, folder: Path) -> None:
-        self.workspace = self.user_errors = self
+        self.workspace = self.user_errors = self.sources = self
         self.folders = [path_to_uri(folder)]
         self._tasks: list[asyncio.Task[None]] = []
 
     def elsewhere(self) -> dict[str, list[types.Diagnostic]]:
         return {}
+
+    def learn(self, _: object) -> None: ...
 
     def is_open(self, _: str) -> bool:
         return False

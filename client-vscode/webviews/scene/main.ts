@@ -3,15 +3,16 @@ import "./scene.css";
 import { type DrawnScene, notes, still } from "../../src/panels/scene/answer";
 import type { FromScene, SceneState, ToScene } from "../../src/panels/scene/messages";
 import { Stage } from "../stage/stage";
-import { button, element } from "../shared/elements";
+import { button, element, iconButton } from "../shared/elements";
 import { connect } from "../shared/host";
+import { toolbar } from "../shared/toolbar";
 
 const host = connect<FromScene, SceneState>((message) => {
   receive(message as ToScene);
 });
 const choice = element("select", { title: "Scene instance", "aria-label": "Scene instance" });
-const home = button("⌂", "Show the whole scene", () => stage?.look());
-const names = button("Aa", "Show or hide the names in the scene", toggleNames);
+const home = iconButton("home", "Show the whole scene", () => stage?.look());
+const names = iconButton("names", "Show or hide the names in the scene", toggleNames);
 const status = element("div", { role: "status" });
 const place = element("div", { class: "place" });
 const faults = element("ul", { class: "faults", "aria-label": "Faults and notes" });
@@ -29,7 +30,7 @@ choice.addEventListener("change", () => {
   draw();
 });
 document.body.append(
-  element("header", { role: "toolbar", "aria-label": "Scene" }, choice, element("span", { class: "space" }), home, names),
+  element("header", {}, toolbar("Scene", choice, element("span", { class: "space" }), home, names)),
   status,
   place,
   faults,

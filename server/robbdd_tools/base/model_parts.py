@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import file_state, path_to_uri
 from robbdd_tools.base.mjcf_parts import mjcf_parts
 from robbdd_tools.base.model_part import ModelPart
 from robbdd_tools.base.model_xml import ModelReader, UnreadableModel
+from robbdd_tools.base.source_texts import source_state
 from robbdd_tools.base.urdf_parts import missing_meshes, urdf_parts
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ class ModelParts:
     - ``title``: the name of the model.
     - ``missing``: reasons why a run refuses the model: collision meshes that do not exist.
     - ``is_complete``: whether the text has the names of all parts.
+    - ``files``: the files that it includes, also missing ones, and itself.
     """
 
     format: str = ""
@@ -42,6 +43,7 @@ class ModelParts:
     problem: str = ""
     missing: tuple[str, ...] = ()
     is_complete: bool = False
+    files: tuple[Path, ...] = ()
 
     def names(self, *kinds: str) -> Iterator[ModelPart]:
         """Yield the named parts of some kinds, in the order of the kinds, then of the text."""
@@ -60,18 +62,18 @@ class ModelParts:
         return any(kind in unnamed and re.fullmatch(_GIVEN.get(kind, "(?!)"), name) for kind in kinds)
 
 
-_States = tuple[tuple[str, "FileState | None"], ...]
+_States = tuple["FileState | None", ...]
 _known: dict[Path, tuple[_States, ModelParts]] = {}
 
 
 def model_parts(path: Path) -> ModelParts:
     """Return the parts of a model file. It is read again when it or a file that it includes has changed."""
     known = _known.pop(path, None)
-    if known is None or any(file_state(uri) != state for uri, state in known[0]):
+    if known is None or tuple(map(source_state, known[1].files)) != known[0]:
         reader = ModelReader(path)
         found = _read(reader)
-        uris = dict.fromkeys(map(path_to_uri, (path, *reader.files)))
-        known = tuple((uri, file_state(uri)) for uri in uris), found
+        files = tuple(dict.fromkeys((path, *reader.files)))
+        known = tuple(map(source_state, files)), replace(found, files=files)
     _known[path] = known
     if len(_known) > KEPT:
         _known.pop(next(iter(_known)), None)

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from robbdd_tools.base.files import UnreadableFile, load_text
+from robbdd_tools.base.files import UnreadableFile
 from robbdd_tools.base.limits import MIB, SOURCE_SIZE
+from robbdd_tools.base.source_texts import load_source
 
 MAX_FILES = 256
 """Files that a model may include."""
@@ -95,7 +96,7 @@ class ModelReader:
 
     def _parsed(self, path: Path) -> list[_Raw]:
         try:
-            text = load_text(path, SOURCE_SIZE)
+            text = load_source(path)
         except UnreadableFile as error:
             raise UnreadableModel(str(error)) from None
         self._size += len(text)

@@ -11,9 +11,9 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import file_state, path_to_uri
 from robbdd_tools.base.interpreter import inherited_paths
 from robbdd_tools.base.python_outline import UNKNOWN, Outline, outline
+from robbdd_tools.base.source_texts import source_state
 
 if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
@@ -60,15 +60,15 @@ def _spec(path: str, search: list[str], *, top: bool) -> ModuleSpec | None:
 
 def module_outline(spec: ModuleSpec) -> Outline:
     """Return the names in a module that was found; ``UNKNOWN`` if it is not a readable Python file."""
-    path = _source(spec)
-    state = None if path is None else file_state(path_to_uri(path))
+    path = source_file(spec)
+    state = None if path is None else source_state(path)
     return UNKNOWN if state is None else outline(state)
 
 
 def module_place(module: str, folder: Path) -> PythonPlace | None:
     """Return the file of a module; ``None`` if there is no such Python file."""
     spec = find_module(module, folder)
-    path = None if spec is None else _source(spec)
+    path = None if spec is None else source_file(spec)
     return None if spec is None or path is None else PythonPlace(path, None, module_outline(spec))
 
 
@@ -130,7 +130,8 @@ def _entries(place: str) -> list[os.DirEntry[str]]:
         return []
 
 
-def _source(spec: ModuleSpec) -> Path | None:
+def source_file(spec: ModuleSpec) -> Path | None:
+    """Return the Python file of a module that was found; ``None`` if it is not one."""
     return Path(spec.origin) if spec.origin is not None and spec.origin.endswith(".py") else None
 
 

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document
-from robbdd_tools.base.files import UnreadableFile, load_text
-from robbdd_tools.base.limits import SOURCE_SIZE
+from robbdd_tools.base.files import UnreadableFile
+from robbdd_tools.base.source_texts import load_source
 
 if TYPE_CHECKING:
     from robbdd_tools.base.files import FileState
@@ -62,7 +62,7 @@ UNKNOWN = Outline(is_complete=False)
 def outline(state: FileState) -> Outline:
     """Return the outline of a file. One that is larger than ``SOURCE_SIZE`` is not read."""
     try:
-        text = load_text(state.path, SOURCE_SIZE)
+        text = load_source(state.path)
         root = ast.parse(text)
     except SyntaxError as error:
         return Outline(error=f"line {error.lineno}: {error.msg}")

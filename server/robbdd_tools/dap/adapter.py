@@ -11,7 +11,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import load_text
+from robbdd_tools.base.files import load_text, path_to_uri
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.dap.conditions import FILTERS
 from robbdd_tools.dap.launch_arguments import debug_request
@@ -23,6 +23,7 @@ from robbdd_tools.dap.wire import BrokenMessage, Wire
 from robbdd_tools.protocol.messages import DebuggerAwaited, RunMessage
 from robbdd_tools.protocol.pauses import Pause, Paused, Reason, Resume, SceneWritten, SetBreakpoints, Until, WriteScene
 from robbdd_tools.protocol.run_folder import DEBUG_HOST
+from robbdd_tools.run.store import RESULTS
 from robbdd_tools.workbench.clause_debugging import DebuggedScenario, scene_document
 
 if TYPE_CHECKING:
@@ -219,6 +220,8 @@ class DebugAdapter:
         kept = f"kept as run {run.number}" if run.number else ""
         counts = [str(one.verdict) for one in run.progress.scenarios]
         self._output("; ".join(filter(None, (f"{self._title}: {', '.join(counts)}", kept))))
+        if run.number:
+            self._event("robbdd/stored", results=path_to_uri(run.folder / RESULTS))
         self._event("exited", exitCode=0 if counts == ["holds"] else 1)
         self._event("terminated")
 
@@ -238,10 +241,8 @@ class DebugAdapter:
         if paused.hits:
             body |= {"description": f"{text} at {paused.time:.3f} s", "text": text}
             self._output(f"{paused.time:.3f} s: {text}")
-        numbers = self._breakpoints.hit(spec, paused.hits)
-        if paused.reason == Reason.BREAKPOINT and not numbers:
-            body["reason"] = "exception"
-        self._event("stopped", **body, hitBreakpointIds=numbers)
+        # The reason "exception", which filters usually have, would announce an error of code: no clause is one.
+        self._event("stopped", **body, hitBreakpointIds=self._breakpoints.hit(spec, paused.hits))
 
     def _launched(self) -> DebuggedScenario:
         if self._scenario is None:

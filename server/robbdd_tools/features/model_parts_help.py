@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.base.files import UnreadableFile, load_text, path_to_uri, uri_to_path
-from robbdd_tools.base.limits import SOURCE_SIZE
+from robbdd_tools.base.files import UnreadableFile, path_to_uri, uri_to_path
 from robbdd_tools.base.model_parts import model_parts
 from robbdd_tools.base.model_paths import package_share
+from robbdd_tools.base.source_texts import load_source
 from robbdd_tools.checks.model_file import model_path
 from robbdd_tools.checks.model_name import ACCEPTED, WANTED, part_names, parts_of
 from robbdd_tools.features.markdown import code, literal
@@ -155,6 +155,6 @@ def _path_in_text(text: str, offset: int, folder: Path) -> Path | None:
 
 def _text(path: Path) -> str:
     try:
-        return load_text(path, SOURCE_SIZE)
+        return load_source(path)
     except UnreadableFile:
         return ""

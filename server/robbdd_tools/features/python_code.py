@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.base.files import UnreadableFile, load_text, path_to_uri, uri_to_path
-from robbdd_tools.base.limits import SOURCE_SIZE
+from robbdd_tools.base.files import UnreadableFile, path_to_uri, uri_to_path
 from robbdd_tools.base.python_modules import (
     PythonPlace,
     attribute_place,
@@ -17,6 +16,7 @@ from robbdd_tools.base.python_modules import (
     module_place,
     modules_in,
 )
+from robbdd_tools.base.source_texts import load_source
 from robbdd_tools.checks.python_source import code_names
 from robbdd_tools.features.markdown import MAX_LINES, code, fenced, literal
 from robbdd_tools.features.outside_place import OutsidePlace
@@ -101,7 +101,7 @@ def _place(uri: str, module: str, attribute: str) -> PythonPlace | None:
 
 def _text(path: Path) -> str:
     try:
-        return load_text(path, SOURCE_SIZE)
+        return load_source(path)
     except UnreadableFile:
         return ""
 

@@ -12,6 +12,7 @@ import pickle
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document
@@ -30,6 +31,7 @@ class Request:
     - ``surveyed``: true for an unopened file. All its findings are wanted, with the texts that contain them.
     - ``importers``: the files that import it, open or not. Without them, declarations that only they use would be
       reported as unused.
+    - ``sources``: the unsaved texts of other files, such as Python code. Only the check of an unopened file needs them.
     """
 
     revision: int
@@ -38,6 +40,7 @@ class Request:
     shapes: EditorShapes
     surveyed: bool = False
     importers: tuple[str, ...] = ()
+    sources: Mapping[Path, str] = field(default_factory=dict[Path, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +66,8 @@ class Answer:
 
     For a surveyed file, ``reached`` are the files that it imports, found or missing, and the files that import it.
     ``together`` are the file and those that import it and are imported by it: the findings are about all of them.
-    ``documents`` are the texts to which the findings refer.
+    ``documents`` are the texts to which the findings refer. ``named`` are the files that each of ``together`` names and
+    that are not models, such as Python code.
     """
 
     revision: int
@@ -73,6 +77,7 @@ class Answer:
     together: tuple[str, ...] = ()
     reached: frozenset[str] = frozenset()
     documents: dict[str, Document] = field(default_factory=dict[str, Document])
+    named: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
 
 
 Execution = tuple[int, int]

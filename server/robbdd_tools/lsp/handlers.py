@@ -25,6 +25,7 @@ from robbdd_tools.lsp.reported_words import report_words
 from robbdd_tools.lsp.run_history import register_run_history
 from robbdd_tools.lsp.scene_preview import register_scene
 from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.lsp.source_documents import is_source
 from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.test_tree import register_tests
@@ -95,17 +96,24 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     async def did_open(ls: RobbddServer, params: types.DidOpenTextDocumentParams) -> None:
         document = params.text_document
-        await ls.text_changed(document.uri, document.version, document.text)
+        if is_source(document.uri):
+            await ls.sources.edited(document.uri, document.text)
+        else:
+            await ls.text_changed(document.uri, document.version, document.text)
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     async def did_change(ls: RobbddServer, params: types.DidChangeTextDocumentParams) -> None:
         document = params.text_document
         text = ls.workspace.get_text_document(document.uri).source
-        await ls.text_changed(document.uri, document.version, text)
+        if is_source(document.uri):
+            await ls.sources.edited(document.uri, text)
+        else:
+            await ls.text_changed(document.uri, document.version, text)
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     async def did_close(ls: RobbddServer, params: types.DidCloseTextDocumentParams) -> None:
-        await ls.text_closed(params.text_document.uri)
+        uri = params.text_document.uri
+        await (ls.sources.closed(uri) if is_source(uri) else ls.text_closed(uri))
 
     @server.feature(types.SHUTDOWN)
     def shutdown(ls: RobbddServer, _: None) -> None:

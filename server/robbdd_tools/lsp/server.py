@@ -37,6 +37,7 @@ from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.run_stores import Stores
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
+from robbdd_tools.lsp.source_documents import SourceDocuments
 from robbdd_tools.lsp.store_watching import StoreWatching
 from robbdd_tools.lsp.stored_verdicts import StoredVerdicts
 from robbdd_tools.lsp.user_errors import UserErrors, model_errors
@@ -100,6 +101,7 @@ class RobbddServer(LanguageServer):
         self.importers = Importers(self)
         self.survey = WorkspaceDiagnostics(self)
         self.user_errors = UserErrors(self)
+        self.sources = SourceDocuments(self)
         self.rejudging = Rejudging(self)
         self._tasks: set[asyncio.Task[None]] = set()
         self._publishing = LatestWins(self.spawn)
@@ -150,6 +152,7 @@ class RobbddServer(LanguageServer):
             return
         await self.publish(uri)
         self.survey.schedule([uri])
+        self.sources.follow_soon(uri)
         self.rejudging.edited(uri, opened=is_new)
         await self.user_errors.refresh()
 
@@ -182,10 +185,7 @@ class RobbddServer(LanguageServer):
         await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
-        """Check all documents again after settings have changed.
-
-        If ``files`` are given, check those affected by them only.
-        """
+        """Check all documents, or those that ``files`` affect, again after settings have changed."""
         self.survey.schedule(files)
         await self.user_errors.refresh()
         for uri in list(self._opened):
@@ -228,7 +228,8 @@ class RobbddServer(LanguageServer):
         """Return the request to validate an unopened file."""
         importers = tuple(sorted((await self.importers.graph(uri)).importers(uri)))
         texts = await self.analyse(lambda _: self.project.texts(), urgent=False)
-        return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True, importers=importers)
+        shapes, sources = self.settings.shapes(uri), self.sources.texts()
+        return Request(next(self._orders), uri, texts, shapes, surveyed=True, importers=importers, sources=sources)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return a request to validate a file, and the texts to which its answer will refer."""
@@ -250,15 +251,15 @@ class RobbddServer(LanguageServer):
         changed, self._changed = self._changed, {}
         self._findings = ProjectFindings(self.results, self.rejudging.executions)
         self.refreshes.want(HINTS, LENSES)
-        await self._show_diagnostics(changed)
+        await self.show_diagnostics(changed)
         await self.user_errors.refresh()
 
     def findings_of(self, snapshot: Snapshot, uri: str) -> Findings:
         """Return the shown results that concern a file."""
         return self._findings.of_file(snapshot, uri, project_of(uri))
 
-    async def _show_diagnostics(self, uris: Iterable[str]) -> None:
-        """Send the diagnostics of some files to the client again."""
+    async def show_diagnostics(self, uris: Iterable[str]) -> None:
+        """Send the diagnostics of those of some files that are open to the client again."""
         if self.pulls:
             self.refreshes.want(DIAGNOSTICS)
             return
@@ -267,10 +268,7 @@ class RobbddServer(LanguageServer):
                 await self._publish_one(uri)
 
     def folders(self, uri: str | None = None) -> list[Path]:
-        """Return the workspace folders.
-
-        With ``uri``, return those that contain the file, innermost first.
-        """
+        """Return the workspace folders, innermost first; with ``uri``, those that contain the file."""
         paths = [path for folder in self.workspace.folders if (path := uri_to_path(folder)) is not None]
         file = None if uri is None else uri_to_path(uri)
         if uri is not None:
@@ -333,7 +331,7 @@ class RobbddServer(LanguageServer):
     def _shapes_found(self, answer: Answer) -> None:
         """Handle an answer of the validation process."""
         if self._shapes.take(answer):
-            self.spawn(self._show_diagnostics(list(self._opened)))
+            self.spawn(self.show_diagnostics(list(self._opened)))
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Start a task that nobody awaits, and keep a reference to it until it ends."""

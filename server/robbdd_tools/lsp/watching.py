@@ -11,6 +11,7 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.lsp.client_settings import read_settings
 from robbdd_tools.lsp.refresh import LENSES
+from robbdd_tools.lsp.source_documents import SUFFIXES, is_source
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RESULTS, RunStore
 from robbdd_tools.syntax.parse import LANGUAGES
@@ -22,8 +23,8 @@ WATCHED = (
     f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', '*.jsonld', 'robbdd.toml', 'pyproject.toml'))}}}"
 )
 """Models, and files that may hold a project's own rules about them."""
-PYTHON = "**/*.py"
-"""Code that models may name: its errors from a run are outdated when it changes."""
+SOURCES = f"**/*{{{','.join(SUFFIXES)}}}"
+"""Files that models may name. The errors of code from a run are outdated when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
 """Results file of a stored run, also of one from the command line."""
 
@@ -40,12 +41,13 @@ def register_watching(server: RobbddServer) -> None:
         # No analysis depends on runs.
         every = [change.uri for change in params.changes]
         stores = {uri: store for uri in every if (store := _store_of(uri)) is not None}
-        changed = [uri for uri in every if uri not in stores and not uri.endswith(".py")]
+        changed = [uri for uri in every if uri not in stores and not is_source(uri)]
         if stores:
             ls.refreshes.want(LENSES)
             ls.spawn(ls.stored_verdicts.refresh(stores.values()))
         if any(uri.endswith(".py") for uri in every):
             await ls.user_errors.code_changed()
+        await ls.sources.changed(filter(is_source, every))
         if changed:
             await ls.files_changed(changed)
 
@@ -79,7 +81,7 @@ async def watch_files(ls: RobbddServer) -> None:
         return
     options = types.DidChangeWatchedFilesRegistrationOptions(
         watchers=[
-            *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, PYTHON, RUNS)),
+            *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, SOURCES, RUNS)),
             types.FileSystemWatcher(STORES, types.WatchKind.Delete),
         ]
     )

@@ -12,8 +12,10 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.base.memory import collect_rarely, collect_recent
 from robbdd_tools.base.processes import lower_priority
+from robbdd_tools.base.source_texts import use_unsaved
 from robbdd_tools.campaign.edited_study import study_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
+from robbdd_tools.features.outside_files import outside_uris
 from robbdd_tools.features.studies import is_study
 from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
@@ -116,6 +118,7 @@ class Worker:
 
     def _survey(self, request: Request) -> Answer:
         """Return all findings about an unopened file and the files that form a cycle of imports with it."""
+        use_unsaved(request.sources)
         for uri in (request.uri, *request.importers):
             self.project.load(uri)
         snapshot = self.project.snapshot()
@@ -131,9 +134,10 @@ class Worker:
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}", together)
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}
         documents = {uri: _document(snapshot, uri) for uri in named}
+        outside = {uri: outside_uris(snapshot, uri) for uri in together}
         reached = frozenset((*snapshot.reachability.walk(request.uri), *snapshot.importers(request.uri)))
         findings = tuple(dict.fromkeys(found))
-        return Answer(request.revision, request.uri, findings, "", together, reached, documents)
+        return Answer(request.revision, request.uri, findings, "", together, reached, documents, outside)
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:

@@ -166,7 +166,10 @@ class WorkspaceDiagnostics:
         together = tuple(map(spelling, answer.together))
         try:
             if not answer.error:
-                self._reached |= dict.fromkeys((answer.uri, *together), frozenset(map(spelling, answer.reached)))
+                outside = frozenset[str]().union(*answer.named.values())
+                reached = frozenset(map(spelling, answer.reached)) | outside
+                self._reached |= dict.fromkeys((answer.uri, *together), reached)
+                self._server.sources.learn({spelling(uri): named for uri, named in answer.named.items()})
                 found = await asyncio.to_thread(self._converted, answer)
                 for uri in together:
                     self._found[uri] = {uri: found.pop(uri, NOTHING)}

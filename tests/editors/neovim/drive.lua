@@ -76,6 +76,19 @@ end)
 local edit = ask("textDocument/rename", { position = place("places.left", true), newName = "near_ws" })
 expect(vim.tbl_count(edit.changes) == 2, "a rename reaches the scene")
 
+vim.cmd("write")
+vim.cmd("edit ../ownrobot/tidy.bddx")
+local model = vim.api.nvim_get_current_buf()
+vim.cmd("edit ../ownrobot/carrying.py")
+local class = place("class Carry", true)
+vim.api.nvim_buf_set_text(0, class.line, class.character, class.line, class.character, { "ing" })
+eventually("an unsaved class counts for the model that names it", function()
+  return vim.iter(vim.diagnostic.get(model)):any(function(found)
+    return found.code == "python-source" and found.message:find("did you mean 'Carrying'", 1, true)
+  end)
+end)
+vim.cmd("edit! ../pickplace/bench.scene")
+
 for _, client in ipairs(vim.lsp.get_clients()) do
   client:stop()
 end

@@ -52,13 +52,15 @@ export class PausedScene implements vscode.Disposable {
     }
     if (isTrace(answer)) {
       this.trace = answer;
-      this.panel ??= this.create(answer);
+      this.panel ??= this.create(titleOf(answer));
+      // The next session may debug another scenario.
+      this.panel.view.title = titleOf(answer);
       this.send();
     }
   }
 
-  private create({ scenario }: Trace): Panel<ToReplay> {
-    const view = beside(VIEW, `Paused ${local(scenario.name)}`);
+  private create(title: string): Panel<ToReplay> {
+    const view = beside(VIEW, title);
     view.onDidDispose(() => {
       this.panel = undefined;
     });
@@ -74,6 +76,10 @@ export class PausedScene implements vscode.Disposable {
       this.panel?.post({ type: "trace", recording: { uri: folder }, trace: this.trace, time, ...selected });
     }
   }
+}
+
+function titleOf({ scenario }: Trace): string {
+  return `Paused ${local(scenario.name)}`;
 }
 
 /** Whether a session debugs clauses, not Python code. */

@@ -1,0 +1,54 @@
+"""The files that are not models and that a model names: Python modules, and descriptions of robots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.model_parts import model_parts
+from robbdd_tools.base.python_modules import find_module, source_file
+from robbdd_tools.checks.model_file import model_path
+from robbdd_tools.checks.python_source import code_names
+from robbdd_tools.names.index import language_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
+
+NAMING = ("bddx", "scenex")
+"""Languages that can name such files."""
+
+
+def outside_uris(snapshot: Snapshot, uri: str) -> frozenset[str]:
+    """Return the URIs of these files for one model, with the files that they include.
+
+    Files that do not exist are among them: the model changes its meaning when they do.
+    """
+    own = uri_to_path(uri)
+    file = snapshot.file(uri) if own is not None and language_of(uri) in NAMING else None
+    if own is None or file is None:
+        return frozenset()
+    return frozenset(
+        path_to_uri(path) for placed in file.declarations for path in _named(placed.declaration, own.parent)
+    )
+
+
+def _named(declaration: Declaration, folder: Path) -> Iterator[Path]:
+    for source in code_names(declaration):
+        spec = find_module(source.module.text, folder)
+        path = None if spec is None else source_file(spec)
+        if path is not None:
+            yield path
+        elif spec is None:
+            yield folder.joinpath(*source.module.text.split(".")).with_suffix(".py")
+    root = declaration.tree
+    for node in walk(root) if isinstance(root, tree.SceneInstance) else ():
+        path = model_path(folder, node.source) if isinstance(node, tree.Model) and node.kind != "usd" else None
+        if path is not None:
+            yield path
+            yield from model_parts(path).files if path.is_file() else ()
