@@ -1,25 +1,19 @@
 // Begin to debug one execution of a scenario, with breakpoints on its clauses; the user chooses if there are several.
 import * as vscode from "vscode";
+import type { DebugTarget } from "./answers/debugtarget";
+import { isDebugTarget } from "./answers/validators.mjs";
 import type { Server } from "./client";
 import { TYPE } from "./debugging";
 import { withoutIcons } from "./literal";
 import { type ListedTest, isListing } from "./testing/listing";
-import { isRecord } from "./values";
 
 /** Number of executions among which one can be chosen by its values. */
 const MOST_LISTED = 1000;
 
-/** The argument of the lens *Debug*: a scenario or an execution, its variant and the number of its scenarios. */
-interface Target {
-  readonly scenario: string;
-  readonly variant: string;
-  readonly count: number | null;
-}
-
 /** Debug the scenario that the argument of a lens names, or the first one of a model. */
 export async function debugScenario(server: Server, uri: string, target: unknown): Promise<void> {
   const model = vscode.Uri.parse(uri);
-  const chosen = isTarget(target) ? await choose(server, uri, target) : {};
+  const chosen = isDebugTarget(target) ? await choose(server, uri, target) : {};
   if (chosen !== undefined) {
     const configuration = { type: TYPE, request: "launch", name: "RobBDD", program: model.fsPath, ...chosen };
     await vscode.debug.startDebugging(vscode.workspace.getWorkspaceFolder(model), configuration);
@@ -30,7 +24,7 @@ export async function debugScenario(server: Server, uri: string, target: unknown
 async function choose(
   server: Server,
   uri: string,
-  { scenario, variant, count }: Target,
+  { scenario, variant, count }: Readonly<DebugTarget>,
 ): Promise<{ readonly scenario: string; readonly variation?: number } | undefined> {
   if (count === 1) {
     return { scenario };
@@ -51,8 +45,4 @@ async function choose(
 
 function listed({ name, detail, number }: ListedTest): vscode.QuickPickItem & { readonly variation: number | undefined } {
   return { label: withoutIcons(name), description: withoutIcons(detail), variation: number };
-}
-
-function isTarget(value: unknown): value is Target {
-  return isRecord(value) && typeof value["scenario"] === "string" && typeof value["variant"] === "string";
 }

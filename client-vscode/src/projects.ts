@@ -1,15 +1,10 @@
 // Create projects from the server's templates.
 import * as vscode from "vscode";
+import { isNewProject, isTemplates } from "./answers/validators.mjs";
 import type { Server } from "./client";
 import { show } from "./models";
 import { reach } from "./milestones";
 import { complain, warn } from "./notices";
-import { isRecord } from "./values";
-
-interface Template {
-  readonly name: string;
-  readonly about: string;
-}
 
 /** Ask for a template, a folder and a name, and open the first model of the created project. */
 export async function newProject(server: Server): Promise<void> {
@@ -17,7 +12,7 @@ export async function newProject(server: Server): Promise<void> {
     return;
   }
   const answer = await server.request("robbdd/templates", {});
-  if (!Array.isArray(answer) || !answer.every(isTemplate)) {
+  if (!isTemplates(answer)) {
     warn("The RobBDD language server knows no templates. Is it of this version?");
     return;
   }
@@ -32,13 +27,12 @@ export async function newProject(server: Server): Promise<void> {
   }
   const folder = vscode.Uri.joinPath(parent, name);
   const begun = await server.request("robbdd/newProject", { template: template.label, uri: folder.toString() });
-  const problem = isRecord(begun) ? begun["problem"] : "the server did not answer";
-  if (typeof problem === "string") {
-    complain(`No project was created: ${problem}`);
+  if (!isNewProject(begun) || begun.problem !== null) {
+    complain(`No project was created: ${isNewProject(begun) ? begun.problem : "the server did not answer"}`);
     return;
   }
   reach("projectBegun");
-  await open(folder, isRecord(begun) ? begun["models"] : []);
+  await open(folder, begun.models);
 }
 
 /** The workspace's only folder; else the user chooses. */
@@ -66,16 +60,11 @@ function askName(template: string): Thenable<string | undefined> {
   });
 }
 
-async function open(folder: vscode.Uri, models: unknown): Promise<void> {
-  const first: unknown = Array.isArray(models) ? models[0] : undefined;
-  if (typeof first === "string") {
+async function open(folder: vscode.Uri, [first]: readonly string[]): Promise<void> {
+  if (first !== undefined) {
     await show(vscode.Uri.parse(first));
   }
   if (vscode.workspace.getWorkspaceFolder(folder) === undefined) {
     vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });
   }
-}
-
-function isTemplate(value: unknown): value is Template {
-  return isRecord(value) && typeof value["name"] === "string" && typeof value["about"] === "string";
 }

@@ -39,7 +39,7 @@ function answer(): void {
   const scene = { iri: HOSTILE, name: HOSTILE, ...lists, sampled: [HOSTILE], missing: [HOSTILE], faults: [{ kind: "pose", reason: HOSTILE, source: null }] };
   LanguageClient.answers.set("robbdd/scene", () => ({ uri: MODEL.toString(), problem: HOSTILE, scenes: [scene] }));
   LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, remark: "", scenario, frames, ...lists }));
-  editor.files.set(`${folder}/results.json`, JSON.stringify({ complete: true, scenarios: [] }));
+  editor.files.set(`${folder}/results.json`, JSON.stringify({ seed: 0, model: HOSTILE, complete: true, scenarios: [] }));
 }
 
 /** The page that a command opens. */

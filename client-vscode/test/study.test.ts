@@ -54,8 +54,12 @@ test("margins are counted in bins with a bound at zero, so that no bar is both g
 });
 
 test("results are read from their text, and nothing else is", () => {
-  assert.equal(readResults(JSON.stringify({ complete: true, scenarios: SCENARIOS }))?.scenarios.length, 5);
-  for (const text of ["", "{", "[]", '{"complete": true}', '{"complete": true, "scenarios": [{}]}']) {
+  const stored = SCENARIOS.map(({ clauses: judged, ...one }) => ({
+    story: "s", variation: 1, seed: 1, ...one, clauses: judged.map((clause) => ({ ...clause, at: null, reason: "" })),
+  }));
+  const results = { seed: 1, model: "cell.bdd", complete: true, scenarios: stored };
+  assert.equal(readResults(JSON.stringify(results))?.scenarios.length, 5);
+  for (const text of ["", "{", "[]", '{"complete": true}', JSON.stringify({ ...results, scenarios: [{}] })]) {
     assert.equal(readResults(text), undefined, text);
   }
 });

@@ -6,6 +6,9 @@ import { LanguageClient } from "./languageclient.kit";
 import { CancellationTokenSource, editor } from "./vscode.kit";
 import { MODEL, command, openWindow } from "./window.kit";
 
+const COUNTS = { total: 3, holds: 2, violated: 1, unknown: 0 };
+const OUTCOME = { run: "1", ...COUNTS, cancelled: false, failed: 2, stored: { run: 4, folder: "" }, pictures: [] };
+
 /** The targets of the runs that the server was asked for; it answers that the third execution failed. */
 function runs(): Record<string, unknown>[] {
   openWindow();
@@ -13,7 +16,7 @@ function runs(): Record<string, unknown>[] {
   LanguageClient.answers.set("workspace/executeCommand", ({ arguments: [{ token, ...target }] }: { arguments: [Record<string, unknown>] }) => {
     assert.equal(typeof token, "string");
     asked.push(target);
-    return { failed: 2, stored: { run: 4, folder: "" }, cancelled: false };
+    return OUTCOME;
   });
   return asked;
 }
@@ -51,8 +54,16 @@ test("the failure leads to its replay", async () => {
   assert.deepEqual(editor.messages, ["Execution 3 of run 4 did not hold, after 2 that did."]);
 });
 
+test("if all executions held, their number is shown", async () => {
+  runs();
+  LanguageClient.answers.set("workspace/executeCommand", () => ({ ...OUTCOME, holds: 3, violated: 0, failed: null }));
+  editor.typed.push("3");
+  await command("robbdd.runUntilFailure");
+  assert.deepEqual(editor.messages, ["All 3 executions held."]);
+});
+
 test("answers without a failure name none", () => {
-  for (const answer of [undefined, {}, { failed: null, stored: { run: 1 } }, { failed: 1 }, { failed: 1, stored: {} }]) {
+  for (const answer of [undefined, {}, { ...OUTCOME, failed: null }, { ...OUTCOME, pictures: 1 }, { ...OUTCOME, stored: {} }, { problem: "" }]) {
     assert.equal(failedIn(answer), undefined);
   }
 });

@@ -13,9 +13,11 @@ test("a hint without a verdict has no mark", () => {
   assert.equal(appearanceOf({ label: "✔ 4/4" }), undefined);
 });
 
-test("a verdict of a later server is unknown, and fresh unless it says that it is stale", () => {
-  assert.deepEqual(appearanceOf({ data: { verdict: "holds" } }), { verdict: "holds", ...FRESH });
-  assert.deepEqual(appearanceOf({ data: { verdict: "perhaps", stale: true } }), { verdict: "unknown", ...FRESH, stale: true });
+test("what a server of another version sends remains a plain hint, and fields that it has added do not matter", () => {
+  assert.deepEqual(appearanceOf({ data: { verdict: "holds", stale: false } }), { verdict: "holds", ...FRESH });
+  assert.equal(appearanceOf({ data: { verdict: "perhaps", stale: true } }), undefined);
+  assert.equal(appearanceOf({ data: { verdict: "holds" } }), undefined);
+  assert.equal(appearanceOf({ data: { verdict: "holds", stale: false, added: 1 } })?.verdict, "holds");
 });
 
 test("*holds* is drawn after its clause, other verdicts before it, but after the row of a table, what is re-judged and a consequence", () => {

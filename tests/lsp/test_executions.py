@@ -188,6 +188,7 @@ async def test_a_client_that_debugs_gets_a_lens_for_each_scenario_and_execution(
         commands = [lens.command for lens in lenses or () if lens.command is not None]
         found += [plain(one.arguments)[0] for one in commands if one.command == "robbdd.debugScenario"]
     await client.shutdown_session()
+    assert [schema_errors("debugtarget.schema.json", one) for one in found] == [[] for _ in found]
     assert {Path(one.pop("uri")).suffix for one in found} == {".bdd", ".bddx"}
     assert {one["scenario"] for one in found} >= {VARIANT, ONE}
     assert [one for one in found if one["variant"] == VARIANT] == [

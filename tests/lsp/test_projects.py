@@ -5,12 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from lsp_kit import CLIENTS, Editor
+from kit import schema_errors
+from lsp_kit import CLIENTS, Editor, plain
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 
 
 async def ask(editor: Editor, method: str, **params: str) -> Any:
-    return await editor.client.protocol.send_request_async(method, params)
+    answer = await editor.client.protocol.send_request_async(method, params)
+    assert schema_errors(f"{method.removeprefix('robbdd/').lower()}.schema.json", plain(answer)) == []
+    return answer
 
 
 @CLIENTS

@@ -90,7 +90,9 @@ async def test_a_large_run_is_announced_with_the_time_that_stored_runs_need(edit
 
 async def estimated(editor: Editor, **options: object) -> Any:
     params = types.ExecuteCommandParams("robbdd.estimate", [{"uri": editor.uri, **options}])
-    return plain(await editor.client.workspace_execute_command_async(params))
+    answer = plain(await editor.client.workspace_execute_command_async(params))
+    assert schema_errors("estimate.schema.json", answer) == []
+    return answer
 
 
 async def test_two_runs_are_compared_as_documented(editor: Editor) -> None:

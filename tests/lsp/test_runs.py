@@ -23,7 +23,10 @@ LAMP = "            and\n            'the lamp is green' after <evt-end>\n      
 async def execute(editor: Editor, command: str, **options: object) -> Any:
     target = {"uri": editor.uri, **options}
     params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[target])
-    return await editor.client.workspace_execute_command_async(params)
+    answer = await editor.client.workspace_execute_command_async(params)
+    if command in ("run", "rerunFailed", "record"):
+        assert schema_errors("runanswer.schema.json", plain(answer)) == [], answer
+    return answer
 
 
 async def hints(editor: Editor) -> dict[str, str]:
@@ -32,6 +35,7 @@ async def hints(editor: Editor) -> dict[str, str]:
     params = types.InlayHintParams(text_document=document, range=editor.everything())
     found = await editor.client.text_document_inlay_hint_async(params) or []
     results = [hint for hint in found if hint.kind is None]
+    assert all(schema_errors("verdictdata.schema.json", plain(hint.data)) == [] for hint in results if hint.data)
     return {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in results}
 
 

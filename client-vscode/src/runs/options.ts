@@ -1,4 +1,5 @@
 // User-defined options of `robbdd.run`: selection and execution of scenarios.
+import { isRunEstimate } from "../answers/validators.mjs";
 import { isRecord } from "../values";
 
 export const AMOUNTS = ["first", "sample", "pairwise"] as const;
@@ -119,8 +120,10 @@ export function summaryOf(options: RunOptions): string {
 
 /** The extent of a run in the server's answer, or the reason why there would be no run. */
 export function extentIn(answer: unknown): string | undefined {
-  const words = isRecord(answer) ? (answer["words"] ?? answer["problem"]) : undefined;
-  return typeof words === "string" ? words : undefined;
+  if (!isRunEstimate(answer)) {
+    return undefined;
+  }
+  return "words" in answer ? answer.words : answer.problem;
 }
 
 /** The problem of a typed number; undefined for a valid one and for an empty text, which means the model's value. */

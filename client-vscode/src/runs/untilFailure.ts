@@ -1,7 +1,7 @@
 // Run until it fails: execute scenarios again and again, with different seeds, up to the first failure.
 import * as vscode from "vscode";
 import { inform } from "../notices";
-import { isRecord } from "../values";
+import { outcomeOf } from "../testing/answers";
 import { numberProblem, typedNumber } from "./options";
 
 /** Executions of each scenario, unless the user gives another number. */
@@ -26,11 +26,11 @@ export async function askUntilFailure(): Promise<Readonly<Record<string, unknown
 
 /** The first execution of a run that did not hold, from the server's answer; undefined if all held. */
 export function failedIn(answer: unknown): Failed | undefined {
-  if (!isRecord(answer) || typeof answer["failed"] !== "number" || !isRecord(answer["stored"])) {
+  const outcome = outcomeOf(answer);
+  if (outcome === undefined || outcome.failed === null) {
     return undefined;
   }
-  const { run } = answer["stored"];
-  return typeof run === "number" ? { run, index: answer["failed"] } : undefined;
+  return { run: outcome.stored.run, index: outcome.failed };
 }
 
 /** Show how it ended, with the replay of the failure. */
@@ -43,7 +43,10 @@ export function tellFailure(answer: unknown, replay: (failed: Failed) => void): 
         replay(failed);
       },
     });
-  } else if (isRecord(answer) && answer["cancelled"] === false && typeof answer["holds"] === "number") {
-    inform(`All ${answer["holds"]} executions held.`);
+    return;
+  }
+  const outcome = outcomeOf(answer);
+  if (outcome?.cancelled === false) {
+    inform(`All ${outcome.holds} executions held.`);
   }
 }

@@ -1,26 +1,31 @@
 // Answers of the server's commands that run scenarios.
-import { isRecord } from "../values";
+import type * as answers from "../answers/runanswer";
+import { isRunAnswer } from "../answers/validators.mjs";
+import type { Immutable } from "../immutable";
+
+export type Outcome = Immutable<answers.Outcome>;
+
+/** The outcome of a run; undefined if nothing was run. */
+export function outcomeOf(answer: unknown): Outcome | undefined {
+  return isRunAnswer(answer) && "stored" in answer ? (answer as Outcome) : undefined;
+}
 
 /** Why nothing was run, if so. */
 export function problemOf(answer: unknown): string | undefined {
-  const problem = isRecord(answer) ? answer["problem"] : undefined;
-  return typeof problem === "string" ? problem : undefined;
+  return isRunAnswer(answer) && "problem" in answer ? (answer as answers.Refusal).problem : undefined;
 }
 
 /** Whether the refusal is unrelated to the scenarios: another run is in progress, or nothing had failed. */
 export function isMomentary(answer: unknown): boolean {
-  return isRecord(answer) && answer["momentary"] === true;
+  return isRunAnswer(answer) && "momentary" in answer;
 }
 
-/** Addresses of a run's videos. */
-export function picturesOf(answer: unknown): string[] {
-  const found: unknown = isRecord(answer) ? answer["pictures"] : undefined;
-  return Array.isArray(found) ? found.filter((entry) => typeof entry === "string") : [];
+/** Addresses of the pictures of a run. */
+export function picturesOf(answer: unknown): readonly string[] {
+  return outcomeOf(answer)?.pictures ?? [];
 }
 
 /** Address of the folder with a run's recording. */
 export function recordedIn(answer: unknown): string | undefined {
-  const stored: unknown = isRecord(answer) ? answer["stored"] : undefined;
-  const folder = isRecord(stored) ? stored["folder"] : undefined;
-  return typeof folder === "string" ? folder : undefined;
+  return outcomeOf(answer)?.stored.folder;
 }

@@ -1,19 +1,11 @@
 // The verdicts among the server's hints and lenses, as marks in the text.
 import type * as vscode from "vscode";
-import { isRecord } from "../values";
+import type { VerdictData } from "../answers/verdictdata";
+import { isVerdictData } from "../answers/validators.mjs";
+import type { Immutable } from "../immutable";
 
 /** Data that determine the colour of a result. */
-export interface Appearance {
-  readonly verdict: "holds" | "violated" | "unknown";
-  /** The text has changed since. */
-  readonly stale: boolean;
-  /** Stored traces were judged by the edited clause; no execution has shown the verdict. */
-  readonly rejudged: boolean;
-  /** The clause is unknown only because of another one, which has the reason. */
-  readonly consequence: boolean;
-  /** Why a clause does not hold; empty if there is nothing to say beyond the margin. */
-  readonly reason: string;
-}
+export type Appearance = Immutable<Required<VerdictData>>;
 
 /** Text before or after a place of a document, with its tooltip. */
 export interface Mark extends Appearance {
@@ -32,11 +24,7 @@ type Text = Pick<vscode.TextDocument, "lineAt">;
 /** The appearance of a hint or a lens of the server; undefined if it has no verdict. */
 export function appearanceOf(shown: object): Appearance | undefined {
   const data: unknown = "data" in shown ? shown.data : undefined;
-  if (!isRecord(data) || typeof data["verdict"] !== "string") {
-    return undefined;
-  }
-  const verdict = data["verdict"] === "holds" || data["verdict"] === "violated" ? data["verdict"] : "unknown";
-  return { verdict, stale: data["stale"] === true, rejudged: data["rejudged"] === true, consequence: data["consequence"] === true, reason: typeof data["reason"] === "string" ? data["reason"] : "" };
+  return isVerdictData(data) ? { rejudged: false, consequence: false, reason: "", ...data } : undefined;
 }
 
 /**

@@ -1,24 +1,15 @@
 // The results of a run as they are stored and as `robbdd run --json` writes them; docs/schemas/run.schema.json.
-import { isRecord } from "../../values";
-import type { Verdict } from "../replay/answer";
+import type * as answers from "../../answers/run";
+import { isRunResults } from "../../answers/validators.mjs";
+import type { Immutable } from "../../immutable";
 
-export interface JudgedClause {
-  readonly iri: string;
-  readonly name: string;
-  readonly role: string;
-  readonly sentence: string;
-  readonly verdict: Verdict;
-  readonly robustness: number | null;
-  readonly unit: string;
-}
+/** What the page shows of a clause; older runs lack the other fields. */
+export type JudgedClause = Immutable<Pick<answers.Clause, "iri" | "name" | "role" | "sentence" | "verdict" | "robustness" | "unit">>;
 
-export interface JudgedScenario {
-  readonly variant: string;
-  readonly name: string;
+export type JudgedScenario = Immutable<Pick<answers.Scenario, "variant" | "name" | "verdict">> & {
   readonly values: Readonly<Record<string, unknown>>;
-  readonly verdict: Verdict;
   readonly clauses: readonly JudgedClause[];
-}
+};
 
 export interface Results {
   readonly complete: boolean;
@@ -33,39 +24,5 @@ export function readResults(text: string): Results | undefined {
   } catch {
     return undefined;
   }
-  return isResults(found) ? found : undefined;
-}
-
-function isResults(value: unknown): value is Results {
-  return (
-    isRecord(value) &&
-    typeof value["complete"] === "boolean" &&
-    Array.isArray(value["scenarios"]) &&
-    value["scenarios"].every(isScenario)
-  );
-}
-
-function isScenario(value: unknown): boolean {
-  return (
-    isRecord(value) &&
-    typeof value["variant"] === "string" &&
-    typeof value["name"] === "string" &&
-    isRecord(value["values"]) &&
-    isVerdict(value["verdict"]) &&
-    Array.isArray(value["clauses"]) &&
-    value["clauses"].every(isClause)
-  );
-}
-
-function isClause(value: unknown): boolean {
-  return (
-    isRecord(value) &&
-    ["iri", "name", "role", "sentence", "unit"].every((name) => typeof value[name] === "string") &&
-    isVerdict(value["verdict"]) &&
-    (value["robustness"] === null || typeof value["robustness"] === "number")
-  );
-}
-
-function isVerdict(value: unknown): boolean {
-  return value === "holds" || value === "violated" || value === "unknown";
+  return isRunResults(found) ? found : undefined;
 }
