@@ -52,7 +52,7 @@ def stopped(client: Client) -> tuple[str, str]:
 
 def test_a_breakpoint_on_a_clause_stops_with_margins_poses_and_events(client: Client, tmp_path: Path) -> None:
     goal, untouched = line_of("at-goal:"), line_of("goal-untouched:")
-    kept = {**CHOICE, "noStore": False, "store": str(tmp_path / "store")}
+    kept: dict[str, Any] = {**CHOICE, "noStore": False, "store": str(tmp_path / "store")}
     found = client.launch(MODEL, untouched, goal, line_of("Then:"), line_of("import"), **kept)
     assert [one["verified"] for one in found] == [True, True, False, False]
     assert [one.get("message") for one in found[2:]] == ["there is no clause on this line"] * 2
