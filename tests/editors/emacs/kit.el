@@ -18,8 +18,8 @@
 
 (defun robbdd-configure (page client)
   "Evaluate what PAGE tells users of CLIENT to paste."
-  (pcase-let ((`(,eglot ,lsp-mode) (robbdd-forms page)))
-    (mapc #'eval (if (eq client 'eglot) eglot (append (butlast eglot 2) lsp-mode)))))
+  (pcase-let ((`(,first ,second) (robbdd-forms page)))
+    (mapc #'eval (if (eq client 'lsp-mode) (append (butlast first 2) second) first))))
 
 (defconst patience 180 "Seconds that anything may take, far more than a slow machine needs.")
 
