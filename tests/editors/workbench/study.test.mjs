@@ -2,11 +2,10 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { accessible } from "./harness/axe.mjs";
+import { accessibleInEach } from "./harness/axe.mjs";
 import { execute } from "./harness/models.mjs";
 import { eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
-import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "tworobots/heights.bdd";
 
@@ -33,11 +32,7 @@ step("a heat map counts what passed, with intervals, and a cell lists its execut
   await page.getByLabel("What is counted").selectOption({ label: "at-goal" });
   await page.locator("td", { hasText: /^0\/10–79 %worst −/ }).waitFor();
   await page.locator(".margins rect.violated").first().waitFor();
-  for (const scheme of Object.keys(SCHEMES)) {
-    await workbench.changeScheme(scheme);
-    await workbench.screenshot(`study-${scheme}`);
-  }
-  await accessible(page, "study");
+  await accessibleInEach(workbench, page, "study");
   await page.locator(".map td button").last().click();
   const [listed] = await page.locator(".executions tr:has(td)").all();
   assert.match(await listed.textContent(), /part = ball, robot = ur10.*✗ violated−36/);
@@ -55,11 +50,7 @@ step("a matrix has the verdicts of all clauses in thousands of executions, for t
   const grid = page.getByRole("grid");
   await eventually(async () => assert.equal(await grid.getAttribute("aria-rowcount"), "5"));
   assert.equal(await page.locator(".line .violated").count(), 3, "two clauses of one execution, and the execution");
-  await accessible(page, "matrix");
-  for (const scheme of Object.keys(SCHEMES)) {
-    await workbench.changeScheme(scheme);
-    await workbench.screenshot(`matrix-${scheme}`);
-  }
+  await accessibleInEach(workbench, page, "matrix");
   // As after a run of 1,680 scenarios of 40 clauses: scenario n violates clause n modulo 97, if there is one.
   const shown = await timed(() => page.locator("body").evaluate((body, [rows, columns]) => {
     const texts = Array.from({ length: columns }, (_, number) => ({ iri: `e:c${number}`, name: `clause-${number}`, role: "then", sentence: "", unit: "m" }));
@@ -103,21 +94,16 @@ step("the history of a clause lists its runs, and two of them are compared", asy
   const history = workbench.webview("History of at-goal");
   await history.getByRole("heading", { name: "at-goal: holds in 0 of 2 runs" }).waitFor();
   await eventually(async () => assert.deepEqual(await history.locator("td.verdict").allTextContents(), ["✗ 0/1", "✗ 3/4"]));
-  await accessible(history, "history");
   await noneCut(history);
   await history.locator("tr.stale", { hasText: "the clause has changed since" }).waitFor();
-  for (const scheme of Object.keys(SCHEMES)) {
-    await workbench.changeScheme(scheme);
-    await workbench.screenshot(`history-${scheme}`);
-  }
+  await accessibleInEach(workbench, history, "history");
   await history.getByRole("button", { name: /Show which executions flipped/ }).click();
   const comparison = workbench.webview("Run 1 → 2");
   await comparison.getByRole("heading", { name: "Run 1 → run 2: 1 flipped, 0 the same, 3 only in run 1" }).waitFor();
   await comparison.getByText("the model has changed").waitFor();
   await comparison.getByText(/^at-goal ✔ → ✗ \(\+.* → −.*\)/).waitFor();
-  await accessible(comparison, "comparison");
   await noneCut(comparison);
-  await workbench.screenshot("comparison");
+  await accessibleInEach(workbench, comparison, "comparison");
   await comparison.getByRole("button", { name: "Replay run 1 and run 2 next to each other" }).click();
   await workbench.page.locator(".tab", { hasText: /Replay bin-heights.*\(run 1\)/ }).waitFor();
   await workbench.page.locator(".tab.active", { hasText: "(run 2)" }).waitFor();

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { ROOT } from "./checkout.mjs";
+import { SCHEMES } from "./workbench.mjs";
 
 const SOURCE = join(ROOT, "client-vscode", "node_modules", "axe-core", "axe.min.js");
 const GRAVE = new Set(["serious", "critical"]);
@@ -27,4 +28,14 @@ export async function accessible(page, name) {
     .filter(({ impact }) => GRAVE.has(impact))
     .flatMap(({ id, help, nodes }) => nodes.map(({ html, failureSummary }) => `${id}: ${help}\n  ${html.slice(0, 200)}\n  ${failureSummary}`));
   assert.deepEqual(found, [], `${name} is not accessible:\n${found.join("\n")}`);
+}
+
+/** Assert the same in each colour scheme, and take a picture of each; the last scheme remains. */
+export async function accessibleInEach(workbench, page, name, schemes = SCHEMES) {
+  for (const [scheme, windowClass] of Object.entries(schemes)) {
+    await workbench.changeScheme(scheme, schemes);
+    await workbench.themed(page, windowClass);
+    await workbench.screenshot(`${name}-${scheme}`);
+    await accessible(page, `${name} (${windowClass})`);
+  }
 }
