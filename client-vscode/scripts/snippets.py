@@ -10,7 +10,7 @@ from robbdd_tools.features.part_snippets import PART_SNIPPETS
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.study_words import WHOLE
 from robbdd_tools.syntax.parse import LANGUAGES
-from robbdd_tools.syntax.study_text import STUDY
+from robbdd_tools.syntax.study_content import STUDY
 
 FOLDER = Path(__file__).parent.parent / "test" / "snippets"
 

@@ -117,6 +117,11 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   declaration(DECLARE, "entity.name.type.variant", "Scenario Variant", "Scenario"),
   declaration(DECLARE, "entity.name.type.behaviour", "Behaviour Tree", "Behaviour"),
   declaration(DECLARE, "variable.other.constant", "Event", "Task", "const set"),
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])(event)\s+(${NAME})(?=\s+when(?![\p{L}\p{N}_-]))`,
+    captures: { 1: { name: `${DECLARE}.robbdd` }, 2: { name: "variable.other.constant.robbdd" } },
+  },
+  phrases(`${WORD}.time`, "when"),
   declaration(WORD, "entity.name.type.behaviour", "sequence", "selector"),
   declaration(WORD, "variable.other.property", "node"),
   labels(SECTION, "Given", "When", "Then", "Scenarios", "variation"),

@@ -5,11 +5,17 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from robbdd_tools.agent.behaviour_calls import Call, groups_of
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.coordination import DEFINED
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.time import After
 from robbdd_tools.monitor.verdict import Cause
+from robbdd_tools.protocol.clauses import DefinedEvent, Fluent
+from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import SceneError
 from world.worlds import BALL, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, scenario
 
@@ -58,6 +64,20 @@ def test_meanwhile_both_arms_move_at_the_same_time() -> None:
 def test_a_behaviour_waits_for_an_event_of_the_other_one() -> None:
     _, times = executed(A, replace(B, is_meanwhile=True, awaited=("t:a-lifted",)))
     assert times["t:a-start"] < times["t:a-lifted"] == times["t:b-start"] < times["t:a-end"]
+
+
+def test_a_behaviour_waits_for_an_event_that_its_template_defines() -> None:
+    held = Fluent(load_catalog().predicates["held-by"], {"object": CUBE, "agent": PANDA}, After("t:taken"))
+    spec = scenario(TWO, seed=2, events={**EVENTS, "t:taken": DEFINED})
+    spec = replace(spec, defined=(DefinedEvent("t:taken", (held,), 0.2),))
+    run = Execution(spec, (A, replace(B, is_meanwhile=True, awaited=("t:taken",))))
+    trace = run.advance_until(lambda _: False)
+    assert run.completed == 2
+    taken, begun = trace.event_time("t:taken", 1), trace.event_time("t:b-start")
+    assert begun == taken
+    gripped = trace.grips[PANDA][:, trace.column(CUBE)] > 0
+    assert taken is not None
+    assert 0.2 <= taken - float(trace.times[int(np.argmax(gripped))]) < 0.2 + 2 * TICK
 
 
 def test_own_events_are_not_awaited() -> None:

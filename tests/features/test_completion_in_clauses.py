@@ -25,6 +25,7 @@ STORY = 'User Story (ns=t) s {\n    As A "a" I Want "b" So That "c"\n    Scenari
 VARIANT = STORY % "    Scenario v {\n        template: <t>\n        scene: <s>\n        variation:\n%s\n    }"
 PLACES = {
     "name: holds(…)": ("bdd", THEN),
+    "event name when …": ("bdd", BODY % "    %s\n    When:\n        <robot> picks <part> and places at <goal>"),
     "for all (…) { When: … Then: … }": ("bdd", BODY),
     "(var … exists in <…>) such that { … }": ("bdd", THEN),
     "(not …)": ("bdd", THEN),

@@ -43,6 +43,8 @@ Scenario Template (ns=t) welding {
     var tool
     set var seams
     var limit
+    event close when <part> is nearer than 3 cm to <tool> and <tool> moves slower than <limit> for 0.5 seconds
+    event lifted when <part> is held by <tool>
     Given:
         ready: holds(<part> is at rest, before the first <grip>)
         ( not cold: holds(<part> is held by <tool>, within 2 seconds before <grip>) )
@@ -53,7 +55,8 @@ Scenario Template (ns=t) welding {
         Then:
             ( a: holds(<part> is nearer than 3 cm to <seam>, after <grip>)
               or ( b: holds(<tool> moves slower than <limit>, at some time from <go> until <stop>)
-                   and holds(<tool> does not drop <part> whenever <part> is held by <tool>, from <go> until <stop>) ) )
+                   and holds(<tool> does not drop <part> whenever <part> is held by <tool>
+                   and <part> is at rest, from <go> until <stop>) ) )
             (var y exists in <seams>) such that { "the seam is clean" after every <stop> }
             text: holds(pred("{a} shines", a=<part>), 0.5 seconds after the last <stop>)
     }

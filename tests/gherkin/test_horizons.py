@@ -30,7 +30,7 @@ AT = '"x:thing" is located at "x:place"'
 
 
 def located(time: TimeConstraint) -> Clause:
-    return Fluent(NAME, "then", "located-at", {"object": THING, "workspace": PLACE}, time, None, LIMIT)
+    return Fluent(NAME, "then", "located-at", {"object": THING, "workspace": PLACE}, time, (), LIMIT)
 
 
 def statement(clause: Clause, value: Value) -> tuple[stated.Statement, str]:
@@ -48,7 +48,7 @@ def statement(clause: Clause, value: Value) -> tuple[stated.Statement, str]:
             f'{AT} at some time within 8 seconds before event "x:e"',
         ),
         (
-            TextFluent(NAME, "then", "it glows", {}, After("x:e"), None, LIMIT),
+            TextFluent(NAME, "then", "it glows", {}, After("x:e"), (), LIMIT),
             After("x:e", 8.0),
             'it glows for 8 seconds after event "x:e"',
         ),

@@ -57,17 +57,17 @@ def located(time: TimeConstraint) -> Clause:
 
 def guarded(time: TimeConstraint) -> Clause:
     condition = Condition(NAME, "held-by", {"object": THING, "agent": PLACE})
-    return Fluent(NAME, "then", "moves-safely", {"agent": THING}, time, condition)
+    return Fluent(NAME, "then", "moves-safely", {"agent": THING}, time, (condition,))
 
 
 def limited(quantity: str, time: TimeConstraint) -> Clause:
     condition = Condition(NAME, "is-nearer-than", {"one": THING, "distance": "30 cm", "other": PLACE})
-    return Fluent(NAME, "then", "moves-slower-than", {"agent": THING, "limit": quantity}, time, condition)
+    return Fluent(NAME, "then", "moves-slower-than", {"agent": THING, "limit": quantity}, time, (condition,))
 
 
 def guarded_text(text: str, time: TimeConstraint) -> Clause:
     condition = Condition(NAME, "moves-safely", {"agent": THING})
-    return TextFluent(NAME, "then", text, {}, time, condition)
+    return TextFluent(NAME, "then", text, {}, time, (condition,))
 
 
 def told(text: str, time: TimeConstraint) -> Clause:

@@ -43,7 +43,8 @@ Scenario Template (ns=t) fetch {
         ( var y exists in <goals> ) such that {
             ( placed: holds(<part> is located at <y>, 2 seconds after <place-end>)
               and clear: holds(<robot> does not collide <y>, from <start> until <end>)
-              and guarded: holds(<robot> does not collide <y> whenever <part> is held by <robot>,
+              and guarded: holds(<robot> does not collide <y> whenever <part> is held by <robot>
+                                 and <part> is located at <y>,
                                  from <start> until <end>)
               and shown: holds(pred('{p} shines', p=<part>) whenever <part> is located at <y>, from <start> until <end>)
               and soon: holds(<part> is located at <y>, within 1.5 seconds after <place-end>)
@@ -58,6 +59,8 @@ Scenario Template (ns=t) sort {
     set var bins
     var robot
     var wait
+    event all-in when <parts> is located at <bins> and <robot> moves slower than 0.1 m/s for <wait> seconds
+    event one-in when <parts> is located at <bins>
     for all ( var x in <parts> ) {
         Given: seen: holds(<robot> can reach <x>, before <pick-start>)
         for all ( var b in <places> ) {
@@ -74,6 +77,7 @@ Scenario Template (ns=t) sort {
         always-calm: holds(<parts> are sorted into <bins>, 1 seconds before every <place-end>)
         calm-once: holds(<parts> are sorted into <bins>, within <wait> seconds after the first <pick-start>)
         calm-at-last: holds(<parts> are sorted into <bins>, after the last <place-end>)
+        calm-inside: holds(<parts> are sorted into <bins>, 1 seconds after the first <one-in>)
         fast: holds(it takes less than 12 s, from <start> until <end>)
 }
 User Story (ns=other_names) zz-first {

@@ -97,7 +97,7 @@ def test_clauses_come_back_as_they_were_written() -> None:
     assert isinstance(slow, Fluent)
     assert slow.arguments == {"agent": T + "var-robot", "limit": "0.25 m/s"}
     near = {"one": T + "var-robot", "distance": T + "var-near", "other": T + "var-goal"}
-    assert slow.condition == Condition(n("whenever-fetch.slow"), "is-nearer-than", near)
+    assert slow.conditions == (Condition(n("whenever-fetch.slow"), "is-nearer-than", near),)
     assert isinstance(apart, Fluent)
     assert apart.arguments["distance"] == "3e-1 m"
     assert text == TextFluent(

@@ -11,7 +11,7 @@ from robbdd_tools.agent.behaviour_calls import Call, Choice, Timing, groups_of
 from robbdd_tools.agent.behaviour_executors import BehaviourExecutors
 from robbdd_tools.agent.idle_arms import IdleArms
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
-from robbdd_tools.catalog.coordination import EXTERNAL, emitter
+from robbdd_tools.catalog.coordination import DEFINED, EXTERNAL, emitter
 from robbdd_tools.catalog.executors import DEFAULT, executes
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
@@ -54,6 +54,7 @@ class BehaviourRun:
     - ``failed``: true when a behaviour has failed.
     - ``begun``: the indices of the behaviours that have begun.
     - ``wall``: the wall time spent in s.
+    - ``has_occurred``: returns whether an event that the template defines has occurred in an iteration.
     - ``observers``: called after each sample, when the events of its time have been emitted, and at the end.
     """
 
@@ -76,6 +77,7 @@ class BehaviourRun:
         self.quantities = OnDemandQuantities(self.simulation)
         self.stamps: list[EventStamp] = []
         self.observers: list[Callable[[], None]] = []
+        self.has_occurred: Callable[[str, int], bool] = lambda _, __: False
         self.remark = ""
         self.finished = False
         self._muted = False
@@ -208,12 +210,16 @@ class BehaviourRun:
         iteration = self._iteration(call)
         occurred = {stamp.name for stamp in self.stamps if stamp.iteration in (0, iteration)}
         own = emitter(call.part, "")
-        return [event for event, name in emitters.items() if name not in occurred and not name.startswith(own)]
+        left = [event for event, name in emitters.items() if name not in occurred and not name.startswith(own)]
+        return [event for event in left if emitters[event] != DEFINED or not self.has_occurred(event, iteration)]
 
     def _refuse_to_wait(self, running: Collection[int]) -> None:
         """Raise ``SimulationError`` if every behaviour that has not ended waits for an event."""
         waiting = [self._awaited(self._calls[index]) for index in running if index not in self.begun]
         if len(waiting) < len(running) or not all(waiting):
+            return
+        if any(self._emitters.get(event) == DEFINED for events in waiting for event in events):
+            # The world may still change by itself: a belt moves, a door closes, an object stays at rest.
             return
         event = waiting[0][0]
         external = self._emitters.get(event, EXTERNAL) == EXTERNAL

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.catalog.object_settings import can_move
+from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.joint_clearance import joint_clearances
@@ -43,6 +44,10 @@ class Execution:
         self._events = spec.events
         self._names = _names_of(spec.events)
         self._node = spec.node
+        self._defined = spec.defined
+        self._found: tuple[tuple[int, int, bool], Trace] | None = None
+        if spec.defined:
+            self.course.has_occurred = lambda event, iteration: self.trace.event_time(event, iteration) is not None
 
     @property
     def simulation(self) -> Simulation:
@@ -93,6 +98,8 @@ class Execution:
         trace = replace(
             trace, unreached=self._unreached(), contents=course.contents, correct_places=course.correct_places
         )
+        if self._defined:
+            trace = self._with_defined_events(trace)
         if course.tree is None:
             return trace
         executions, pending = course.tree.executions, course.tree.pending
@@ -101,6 +108,20 @@ class Execution:
             executions={event: executions[emitter] for event, emitter in self._events.items() if emitter in executions},
             pending=tuple(event for event, emitter in self._events.items() if emitter in pending),
         )
+
+    def _with_defined_events(self, trace: Trace) -> Trace:
+        """Return a trace with the events that the template defines by conditions. The last result is cached."""
+        course = self.course
+        state = len(trace.times), len(course.stamps), course.finished
+        if self._found is None or self._found[0] != state:
+            conditions = [condition for event in self._defined for condition in event.conditions]
+            for condition in conditions:
+                course.quantities.measure(condition, trace, range(len(trace.times)))
+            complete = self.complete(trace)
+            found = with_defined_events(complete, self._defined, course.regions, numbered=not self._node)
+            self._found = state, found
+        found = self._found[1]
+        return replace(trace, events=found.events, defined=found.defined, doubts=found.doubts)
 
     def state_at(self, time: float) -> FloatArray:
         """Return the joint positions of the engine at the last sample at or before a time (s)."""

@@ -12,8 +12,10 @@ import numpy as np
 from robbdd_tools.agent.log_arms import find_arms
 from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.agent.log_grips import LogGrips, grip_signals
+from robbdd_tools.catalog.coordination import DEFINED
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
+from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.judging.log_names import elements_of, occurrences_of
 from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
@@ -90,6 +92,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         },
         immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
     )
+    trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 
 
@@ -97,6 +100,8 @@ def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tu
     """Return the events of a scenario in a log. Without a report, the scenario starts and ends with the log."""
     stamps: list[EventStamp] = []
     for event, emitter in spec.events.items():
+        if emitter == DEFINED:
+            continue
         times = occurrences_of(event, emitter, contents.texts)
         if emitter not in (START, END):
             stamps += (EventStamp(event, time, number) for number, time in enumerate(times, start=1))

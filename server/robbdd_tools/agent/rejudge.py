@@ -19,7 +19,9 @@ from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.catalog.coordination import DEFINED
 from robbdd_tools.judging.decisions import decide, occurred
+from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
@@ -81,7 +83,7 @@ class StoredTraces:
         if reason:
             return unknown(reason, Cause.CHANGED)
         try:
-            return read_trace(trace_file(self._folder, index))
+            return with_own_events(read_trace(trace_file(self._folder, index)), spec)
         except UnreadableTrace as error:
             return unknown(str(error), Cause.NO_RECORD)
 
@@ -99,7 +101,7 @@ class StoredTraces:
         if stored is None or change_of(spec, stored):
             return
         try:
-            evidence = read_trace(trace_file(self._folder, index))
+            evidence = with_own_events(read_trace(trace_file(self._folder, index)), spec)
         except UnreadableTrace:
             return
         for clause in (clause for clause in spec.clauses if clause.role != "when"):
@@ -126,6 +128,12 @@ class StoredTraces:
         if entry is None:
             return unknown(CHANGED.format("the behaviour"), Cause.CHANGED)
         return Verdict(Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"])
+
+
+def with_own_events(evidence: Evidence, spec: ScenarioSpec) -> Evidence:
+    """Return stored evidence with the events that the edited template defines."""
+    trace = with_defined_events(evidence.trace, spec.defined, evidence.regions, numbered=not spec.node)
+    return replace(evidence, trace=trace)
 
 
 def _stored_behaviour(
@@ -190,7 +198,8 @@ def _beyond(time: TimeConstraint, trace: Trace) -> str:
 
 def _unrecorded(event: str, spec: ScenarioSpec, recorded: Mapping[str, str]) -> Verdict | None:
     """Return the verdict on a clause if the stored execution did not record its event; otherwise ``None``."""
-    if event in spec.events and spec.events[event] != recorded.get(event):
+    own = spec.events.get(event)
+    if own is not None and own != DEFINED and own != recorded.get(event):
         return unknown(f"the stored trace has no record of event {event}: {AGAIN}", Cause.NO_RECORD)
     return None
 

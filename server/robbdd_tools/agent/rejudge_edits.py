@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.channel import Lines
 from robbdd_tools.agent.execute_requests import read_requests
-from robbdd_tools.agent.rejudge import decided_on_trace
+from robbdd_tools.agent.rejudge import decided_on_trace, with_own_events
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
 from robbdd_tools.protocol.judge_orders import JudgeOrder, StoredTrace, decode_order
@@ -97,8 +97,8 @@ def obey(order: JudgeOrder, traces: Traces, channel: Channel) -> None:
 def _verdicts(order: JudgeOrder, stored: StoredTrace, traces: Traces) -> list[tuple[int, Verdict]]:
     clauses = order.spec.clauses
     try:
-        evidence = traces.read(Path(stored.path))
         spec = replace(order.spec, seed=stored.seed)
+        evidence = with_own_events(traces.read(Path(stored.path)), spec)
         return [(clause.line, decided_on_trace(clause, evidence, spec, order.recorded)) for clause in clauses]
     except UnreadableTrace as error:
         problem = str(error)

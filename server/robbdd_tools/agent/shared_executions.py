@@ -101,7 +101,7 @@ def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
 
     Scenarios that share an execution record the contact forces that the clauses of the first one need.
     """
-    clauses = tuple(clauses)
+    clauses = (*clauses, *(condition for event in spec.defined for condition in event.conditions))
     lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)
     for clause in clauses if spec.tree is None else ():
         for fluent in fluents_of(clause):

@@ -13,6 +13,9 @@ START, END = "start", "end"
 EXTERNAL = "external"
 """Emitter of an event of the environment, such as an operator's. Nothing simulates it; a log may report it."""
 
+DEFINED = "defined"
+"""Emitter of an event that a template defines by conditions. It is found in the trace."""
+
 
 def emitter(node: str, event: str) -> str:
     """Return the emitter of an event inside a node, which is the node itself or the behaviour that it executes.

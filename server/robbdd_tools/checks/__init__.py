@@ -15,6 +15,7 @@ from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.catalog_models import catalog_models
 from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.cyclic_import import cyclic_import
+from robbdd_tools.checks.defined_event import defined_event
 from robbdd_tools.checks.distribution import distribution
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
 from robbdd_tools.checks.emission import emission
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
 
 DECLARATION_RULES = (
     contradictory_order,
+    defined_event,
     distribution,
     emission,
     empty_duration,

@@ -63,15 +63,16 @@ def _unjudged(site: GraphSite, clauses: tuple[Clause, ...]) -> Iterator[Diagnost
         if not isinstance(clause, TextFluent | TextClause) or clause.iri in by_policy:
             continue
         text = clause.template if isinstance(clause, TextFluent) else clause.text
-        condition = clause.condition if isinstance(clause, TextFluent) else None
-        sentence = sample_sentence(text, time_words(clause.time), None if condition is None else condition.predicate)
+        conditions = clause.conditions if isinstance(clause, TextFluent) else ()
+        sentence = sample_sentence(text, time_words(clause.time), [one.predicate for one in conditions])
         if text.strip() and (path is None or not may_define(path, sentence)):
             message = needs_evaluator(may_have_policy=isinstance(clause, TextFluent))
             yield site.finding(clause.iri, NO_EVALUATOR, message)
 
 
 def _unemitted(site: GraphSite, variant: Variant, clauses: tuple[Clause, ...]) -> Iterator[Diagnostic]:
-    bound = dict.fromkeys((variant.template.start, variant.template.end))
+    template = variant.template
+    bound = dict.fromkeys((template.start, template.end, *(event.iri for event in template.events)))
     inner: dict[str, None] = {}
     for behaviour in behaviour_clauses(clauses):
         events = load_catalog().behaviours[behaviour.behaviour].events
@@ -114,7 +115,7 @@ def _configuration(site: GraphSite, variant: Variant, clause: Fluent) -> Iterato
 
 
 def _is_lenient(clause: Fluent) -> bool:
-    return clause.condition is not None or clause.time.some_time
+    return bool(clause.conditions) or clause.time.some_time
 
 
 def _places(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagnostic]:

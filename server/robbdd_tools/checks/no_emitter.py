@@ -64,6 +64,8 @@ def _emitters(site: Site, template: tree.Template) -> _Emitters:
             event = site.target(ref)
             if event is not None:
                 found.bound.setdefault(_key(event), ref.path)
+    for defined in template.events:
+        found.bound.setdefault((site.uri, f"{template.name.text}.{defined.name.text}"), defined.name.text)
     for when in (node for node in walk(template) if isinstance(node, tree.When) and node.more):
         moments = Counter(
             moment for use in when.behaviours for moment in load_catalog().behaviours[use.action.word].events

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -102,8 +102,8 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 
 def _sentence(clause: FreeClause) -> str:
-    condition = clause.condition.word if isinstance(clause, tree.Fluent) and clause.condition is not None else None
-    return sample_sentence(text_of(clause).value, _time_words(clause.time), condition)
+    conditions = clause.conditions if isinstance(clause, tree.Fluent) else ()
+    return sample_sentence(text_of(clause).value, _time_words(clause.time), [one.word for one in conditions])
 
 
 def _time_words(time: tree.TimeConstraint) -> str:
@@ -114,13 +114,14 @@ def _time_words(time: tree.TimeConstraint) -> str:
     return instant_words(relation, "x", seconds, time.some_time, time.which)
 
 
-def sample_sentence(text: str, time: str, condition: str | None = None) -> str:
+def sample_sentence(text: str, time: str, conditions: Sequence[str] = ()) -> str:
     """Return the sentence of a step for a text, as in a feature, with sample words for values.
 
-    ``time`` are the words of its time constraint, with sample words for events. ``condition`` is the predicate of its
-    condition.
+    ``time`` are the words of its time constraint, with sample words for events. ``conditions`` are the predicates of
+    its conditions.
     """
     stated = _SLOT.sub('"x"', text.strip().replace("\\", "\\\\"))
-    if condition is not None:
-        stated += f" whenever {_SLOT.sub('x', load_catalog().predicates[condition].sentence)}"
+    if conditions:
+        sentences = (load_catalog().predicates[condition].sentence for condition in conditions)
+        stated += f" whenever {_SLOT.sub('x', ' and '.join(sentences))}"
     return f"{stated} {time}"

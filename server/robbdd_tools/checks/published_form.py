@@ -173,7 +173,7 @@ class _Rewriter:
             yield _put(start, f"{fluent.name.text}: ")
             return
         yield _put(start, f"{fluent.name.text}: holds(")
-        yield _put((fluent.condition or fluent.predicate).span.end, ",")
+        yield _put((fluent.predicate, *fluent.conditions)[-1].span.end, ",")
         yield _put(fluent.span.end, ")")
 
     def _behaviour(self, use: tree.BehaviourUse) -> Iterator[Change]:

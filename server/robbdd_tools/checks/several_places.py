@@ -140,8 +140,8 @@ def _found_places(site: Site) -> Iterator[_Place]:
 def _lenient(node: tree.Node) -> Iterator[tree.Node]:
     """Yield the phrases of clauses that each element may satisfy at another time."""
     for clause in walk(node):
-        if isinstance(clause, tree.Fluent) and (clause.condition is not None or clause.time.some_time):
-            yield from filter(None, (clause.predicate, clause.condition))
+        if isinstance(clause, tree.Fluent) and (clause.conditions or clause.time.some_time):
+            yield from (clause.predicate, *clause.conditions)
 
 
 def _scenarios(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Scenario]:

@@ -21,7 +21,15 @@ from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.rejudged_results import MARK
 from robbdd_tools.features.run_verdicts import NOTHING
-from robbdd_tools.features.sentences import clause_sentence, condition_meaning, time_meaning, word_meaning, word_of
+from robbdd_tools.features.sentences import (
+    clause_sentence,
+    condition_meaning,
+    event_meaning,
+    event_sentence,
+    time_meaning,
+    word_meaning,
+    word_of,
+)
 from robbdd_tools.features.used_names import name_of, uses_by_part
 from robbdd_tools.names.elements import Site, elements_of, scene_members, site_of
 from robbdd_tools.names.index import language_of
@@ -179,6 +187,8 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             yield code_block(text, language_of(site.uri))
         case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
             yield from _clause(site, definition)
+        case SymbolKind.EVENT:
+            yield from _defined_event(site, definition)
         case SymbolKind.VARIANT:
             for scenario in scenarios(site):
                 if site.span(scenario.variant.name) == definition.span:
@@ -218,8 +228,15 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
                 yield word_meaning(word_of(phrase))
             if isinstance(node, tree.Fluent):
                 yield time_meaning(node.time)
-                yield from [] if node.condition is None else [condition_meaning(node.condition)]
+                yield from [condition_meaning(node.conditions)] if node.conditions else []
             return
+
+
+def _defined_event(site: Site, definition: Definition) -> Iterator[str]:
+    for event in site.tree.events if isinstance(site.tree, tree.Template) else ():
+        if site.span(event.name) == definition.span:
+            yield f"> {literal(event_sentence(event))}"
+            yield event_meaning(event)
 
 
 def _tree_node(site: Site, definition: Definition) -> Iterator[str]:

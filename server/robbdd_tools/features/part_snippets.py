@@ -11,6 +11,10 @@ _FLUENT = "holds(<${2:object}> is located at <${3:workspace}>, ${4|before,after|
 _BDD = (
     Snippet("name: holds(…)", f"${{1:name}}: {_FLUENT}"),
     Snippet(
+        "event name when …",
+        "event ${1:name} when <${2:one}> is nearer than ${3:0.5} ${4|m,cm,mm|} to <${5:other}>",
+    ),
+    Snippet(
         "for all (…) { When: … Then: … }",
         "for all (var ${1:x} in <${2:set}>) {\n"
         "    When:\n"

@@ -10,6 +10,8 @@ from robbdd_tools.protocol.time_words import occurrence_words
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robbdd_tools.catalog.api import Behaviour, Predicate
 
 
@@ -19,9 +21,24 @@ def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
         return _phrase_sentence(clause.action)
     predicate = clause.predicate
     words = _phrase_sentence(predicate) if isinstance(predicate, tree.PhraseUse) else _text_sentence(predicate)
-    if clause.condition is not None:
-        words = f"{words} whenever {_phrase_sentence(clause.condition)}"
+    if clause.conditions:
+        words = f"{words} whenever {_joined(clause.conditions)}"
     return f"{words} {time_words(clause.time)}"
+
+
+def event_sentence(event: tree.DefinedEvent) -> str:
+    """Return the definition of an event as a sentence."""
+    lasting = "" if event.seconds is None else f" for {_seconds(event.seconds)} seconds"
+    return f"{event.name.text} occurs when {_joined(event.conditions)}{lasting}"
+
+
+def event_meaning(event: tree.DefinedEvent) -> str:
+    """Describe when a defined event occurs."""
+    if event.seconds is None:
+        when = "It occurs at each sample at which this becomes true"
+    else:
+        when = f"It occurs each time that this has been true for {_seconds(event.seconds)} s without interruption"
+    return f"{when}. If it is true from the beginning, it first has to become false."
 
 
 def time_words(time: tree.TimeConstraint) -> str:
@@ -57,10 +74,10 @@ def _seconds(horizon: tree.Number | tree.Ref) -> str:
     return f"<{horizon.path}>" if isinstance(horizon, tree.Ref) else str(horizon.value)
 
 
-def condition_meaning(condition: tree.PhraseUse) -> str:
-    """Describe which samples of a window a clause with this condition concerns."""
+def condition_meaning(conditions: Sequence[tree.PhraseUse]) -> str:
+    """Describe which samples of a window a clause with these conditions concerns."""
     return (
-        f"Judged only at the samples at which this holds: {_phrase_sentence(condition)}. The margin is that of the "
+        f"Judged only at the samples at which this holds: {_joined(conditions)}. The margin is that of the "
         "predicate at these samples. If there are none, the clause holds and is marked as vacuous."
     )
 
@@ -91,6 +108,10 @@ def word_meaning(word: Predicate | Behaviour) -> str:
 
 
 UNJUDGED = "This installation cannot judge it: such a clause is unknown."
+
+
+def _joined(phrases: Sequence[tree.PhraseUse]) -> str:
+    return " and ".join(map(_phrase_sentence, phrases))
 
 
 def _phrase_sentence(use: tree.PhraseUse) -> str:

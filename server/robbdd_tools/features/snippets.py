@@ -40,6 +40,8 @@ _CHOSEN: Mapping[str, str] = {
 """The alternative to show if the grammar's first one is not the most common."""
 _SHOWN = frozenset({"namespace", "duration", "task", "role", "given", "then", "root"})
 """Optional parts that are shown."""
+_RARE = frozenset({"events"})
+"""Repeated parts that are not shown; they have a snippet of their own."""
 _LABELS = frozenset({"Given", "When", "Then", "Scenarios", "variation"})
 _SAMPLES: Mapping[str, str] = {
     "NameText": "name",
@@ -192,7 +194,7 @@ class _Writer:
                 if not _SHOWN.isdisjoint(_attributes(part.part)):
                     yield from self._words(part.part, depth, name)
             case Assignment():
-                if part.operator == "*=" and depth > 1 and part.attribute != "values":
+                if part.operator == "*=" and (part.attribute in _RARE or (depth > 1 and part.attribute != "values")):
                     return
                 if part.operator in ("*=", "+=") and part.separator is None:
                     yield _BREAK

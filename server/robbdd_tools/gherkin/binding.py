@@ -15,6 +15,8 @@ from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
     Cell,
     Clause,
+    Condition,
+    DefinedEvent,
     EventClause,
     Exists,
     Fluent,
@@ -24,7 +26,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.monitor.time import Before, During, TimeConstraint
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.protocol.time_words import instant_words
@@ -181,10 +183,18 @@ class Binder:
     ) -> dict[str, stated.Filler]:
         return {slot: self._slot(slot, arguments.get(slot), values) for slot in slots}
 
+    def defined_event(self, event: DefinedEvent, values: Values) -> stated.DefinedEvent | None:
+        """Return an event that a template defines; ``None`` if its number of seconds has no valid value."""
+        seconds = event.seconds if event.variable is None else seconds_of(values.get(event.variable))
+        name = self.curie(event.iri)
+        conditions = (self._one_condition(condition, values) for condition in event.conditions)
+        fluents = (stated.Fluent(one.predicate, one.arguments, After(name)) for one in conditions)
+        return None if seconds is None else stated.DefinedEvent(name, tuple(fluents), seconds)
+
     def _condition(self, clause: Fluent | TextFluent, values: Values) -> stated.Condition | None:
-        condition = clause.condition
-        if condition is None:
-            return None
+        return stated.joint_condition([self._one_condition(one, values) for one in clause.conditions])
+
+    def _one_condition(self, condition: Condition, values: Values) -> stated.Condition:
         predicate = self.catalog.predicates[condition.predicate]
         slots = (slot.name for slot in predicate.slots)
         return stated.Condition(predicate, self._slots(slots, condition.arguments, values))
@@ -262,8 +272,8 @@ def mentions(clause: Clause, variable: Iri) -> bool:
 
 def _terms(clause: Fluent | TextFluent) -> list[Iri | str]:
     """Return what fills the slots of a clause and of its condition."""
-    condition = clause.condition
-    return [*clause.arguments.values(), *(() if condition is None else condition.arguments.values())]
+    conditions = (one for condition in clause.conditions for one in condition.arguments.values())
+    return [*clause.arguments.values(), *conditions]
 
 
 def _mentions_once(clause: Clause, variable: Iri) -> bool:

@@ -13,7 +13,8 @@ from robbdd_tools.gherkin.render import Sheet, our_sheet
 from robbdd_tools.gherkin.scenario_outline import Outline, outline, variable_name
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
-from robbdd_tools.graph.acceptance_model import AcceptanceModel, Clause, Iri, Story, Variant
+from robbdd_tools.gherkin.words import Placeholder
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
 from robbdd_tools.protocol.time_words import WORDING
 
 Numbered = tuple[int, Binding]
@@ -42,7 +43,8 @@ class VariantHeader:
     """The data that the scenarios of a variant share.
 
     ``columns`` are the names of its variables. ``tables`` are the scene tables that are not in the background.
-    ``outline`` expresses all scenarios at once; ``None`` if this is not possible.
+    ``outline`` expresses all scenarios at once; ``None`` if this is not possible. ``events`` are the definitions of the
+    events that its template defines, with ``<column>`` instead of values.
     """
 
     name: str
@@ -52,6 +54,7 @@ class VariantHeader:
     columns: tuple[str, ...]
     tables: tuple[SceneTable, ...]
     outline: Outline | None
+    events: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +66,7 @@ class ScenarioText:
     - ``cells``: its values as words, in the order of the variant's columns.
     - ``lines``: the feature lines of ``steps``; 0 for a step that the template omits.
     - ``tables``: its scene tables that are not in the background.
+    - ``events``: the definitions of the events that its template defines.
     """
 
     name: str
@@ -73,6 +77,7 @@ class ScenarioText:
     tags: tuple[str, ...]
     tables: tuple[SceneTable, ...]
     steps: tuple[Step, ...]
+    events: tuple[str, ...] = ()
     line: int = 0
     lines: tuple[int, ...] = ()
 
@@ -88,11 +93,12 @@ class ScenarioData:
     tags: tuple[str, ...]
     tables: tuple[SceneTable, ...]
     steps: tuple[Step, ...]
+    events: tuple[str, ...]
 
     @staticmethod
     def of(one: ScenarioText) -> ScenarioData:
         """Return the data of a scenario."""
-        return ScenarioData(one.name, one.number, one.values, one.cells, one.tags, one.tables, one.steps)
+        return ScenarioData(one.name, one.number, one.values, one.cells, one.tags, one.tables, one.steps, one.events)
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +210,7 @@ class _VariantWriter:
             tuple(variable_name(variable) for variable in variables),
             self._tables,
             outline(writer, self._clauses, variant.variation, self._members) if outlined else None,
+            self._definitions({variable: Placeholder(variable_name(variable)) for variable in variables}),
         )
 
     def scenario(self, number: int, values: Binding) -> ScenarioText:
@@ -220,7 +227,13 @@ class _VariantWriter:
             (*self.header.tags, *self._clause_tags(steps)),
             (*self._tables, *variable_table(self._writer, extra)),
             steps,
+            self._definitions(values),
         )
+
+    def _definitions(self, values: Mapping[Iri, Cell]) -> tuple[str, ...]:
+        """Return the definitions of the template's events as sentences."""
+        found = (self._writer.definition(event, values) for event in self._variant.template.events)
+        return tuple(filter(None, found))
 
     def _clause_tags(self, steps: Iterable[Step]) -> Iterator[str]:
         for clause in dict.fromkeys(step.clause for step in steps):

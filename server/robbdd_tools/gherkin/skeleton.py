@@ -144,8 +144,8 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
 
 
 def _condition(clause: Fluent | TextFluent) -> str:
-    condition = clause.condition
-    return "" if condition is None else f" whenever {load_catalog().predicates[condition.predicate].sentence}"
+    sentences = [load_catalog().predicates[condition.predicate].sentence for condition in clause.conditions]
+    return f" whenever {' and '.join(sentences)}" if sentences else ""
 
 
 def _time(clause: Fluent | TextFluent | TextClause) -> str:

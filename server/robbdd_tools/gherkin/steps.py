@@ -13,6 +13,7 @@ from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     Clause,
+    DefinedEvent,
     EventClause,
     Exists,
     ForAll,
@@ -79,6 +80,15 @@ class StepWriter:
                     yield self._step("when", clause, values, scope)
                 case _:
                     yield self._step(clause.role, clause, values, scope)
+
+    def definition(self, event: DefinedEvent, values: Values) -> str:
+        """Return the definition of an event as a sentence; empty if its number of seconds has no valid value."""
+        found = self._binder.defined_event(event, values)
+        if found is None:
+            return ""
+        conditions = " and ".join(filled(one.predicate.sentence, one.arguments) for one in found.conditions)
+        lasting = f" for {found.seconds:g} seconds" if found.seconds else ""
+        return f'event "{found.name}" occurs when {conditions}{lasting}'
 
     def sentence(self, clause: Clause, values: Values) -> str:
         """Return the sentence of one clause with the values of its variables."""

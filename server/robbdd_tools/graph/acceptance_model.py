@@ -29,7 +29,7 @@ Cell = Value | tuple[Value, ...]
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """The predicate of ``whenever``. Its fields have the same meaning as in a fluent."""
+    """A predicate of ``whenever`` or of a defined event. Its fields have the same meaning as in a fluent."""
 
     iri: Iri
     predicate: str
@@ -41,7 +41,7 @@ class Fluent:
     """A predicate under a time constraint. The events of the time constraint are IRIs.
 
     ``predicate`` is the name of the predicate in the catalog. ``arguments`` maps each slot of the predicate to a
-    variable, an element or a bare name. ``condition`` selects the samples at which the predicate must hold. ``seconds``
+    variable, an element or a bare name. ``conditions`` select the samples at which the predicate must hold. ``seconds``
     is the variable whose value is the horizon of the time constraint (s), if any.
     """
 
@@ -50,7 +50,7 @@ class Fluent:
     predicate: str
     arguments: Mapping[str, Iri | str]
     time: TimeConstraint
-    condition: Condition | None = None
+    conditions: tuple[Condition, ...] = ()
     seconds: Iri | None = None
 
 
@@ -63,7 +63,7 @@ class TextFluent:
     template: str
     arguments: Mapping[str, Iri]
     time: TimeConstraint
-    condition: Condition | None = None
+    conditions: tuple[Condition, ...] = ()
     seconds: Iri | None = None
 
 
@@ -217,6 +217,19 @@ class SceneModel:
 
 
 @dataclass(frozen=True, slots=True)
+class DefinedEvent:
+    """An event that occurs when all its conditions have become true, or have been true for ``seconds``.
+
+    ``variable`` is the variable whose value is the number of seconds, if any.
+    """
+
+    iri: Iri
+    conditions: tuple[Condition, ...]
+    seconds: float = 0.0
+    variable: Iri | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Template:
     """A scenario template with its clauses in order. The events ``start`` and ``end`` delimit every execution."""
 
@@ -224,6 +237,7 @@ class Template:
     clauses: tuple[Clause, ...]
     start: Iri
     end: Iri
+    events: tuple[DefinedEvent, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

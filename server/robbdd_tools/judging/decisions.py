@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
-from itertools import count, product
+from itertools import combinations, count, product
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
@@ -67,7 +67,8 @@ def occurred(trace: Trace, event: str, iteration: int) -> Verdict:
     if trace.unreached:
         return unknown(trace.unreached, Cause.UNREACHED)
     if time is None:
-        return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
+        doubt = trace.doubt(event, (iteration, iteration))
+        return unknown(never_occurred(trace, event, iteration) if doubt is None else str(doubt), Cause.NO_EVENT)
     return Verdict(Outcome.HOLDS, at=time)
 
 
@@ -103,7 +104,7 @@ def alternatives(fluent: Fluent) -> Iterator[Iterator[Instance]]:
     """Yield the alternatives of a fluent. The fluent holds if one alternative does.
 
     An alternative is a list of instances, all of which must hold. A set that fills a slot of the predicate and a slot
-    of the condition has the same element in both.
+    of the condition, or slots of two conditions, has the same element in both.
     """
     slots, arguments = fluent.predicate.slots, dict(fluent.arguments)
     condition = fluent.condition
@@ -125,6 +126,12 @@ def _split_instances(fluent: Fluent, slots: tuple[Slot, ...], arguments: Mapping
         if name.startswith(_OF_CONDITION)
         for other in own
         if arguments[name] == arguments[other]
+    ]
+    of_condition = [name for name in single if name.startswith(_OF_CONDITION)]
+    same += [
+        (name, other)
+        for name, other in combinations(of_condition, 2)
+        if arguments[name] == arguments[other] and name.partition("-")[2] != other.partition("-")[2]
     ]
     for words in _instances(slots, arguments):
         if any(words[name] != words[other] for name, other in same):

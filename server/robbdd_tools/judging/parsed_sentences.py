@@ -20,6 +20,7 @@ from robbdd_tools.protocol.clauses import (
     Junction,
     Statement,
     Text,
+    joint_condition,
 )
 from robbdd_tools.protocol.time_words import FIRST_WORDING, TIME, WORDING, constraint_of
 
@@ -118,9 +119,13 @@ def _conditions() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
 
 
 def _condition(text: str | None) -> Condition | None:
-    """Return the condition that a part of a sentence states; ``None`` if no predicate of the catalog matches."""
-    if text is None:
-        return None
+    """Return the conditions that a part of a sentence states; ``None`` if a predicate is not in the catalog."""
+    found = [] if text is None else [_one_condition(part) for part in _split(text, " and ")]
+    known = [one for one in found if one is not None]
+    return joint_condition(known) if len(known) == len(found) else None
+
+
+def _one_condition(text: str) -> Condition | None:
     for predicate, pattern in _conditions():
         if (match := pattern.fullmatch(text)) is not None:
             return Condition(predicate, _fillers(match, predicate.slots))

@@ -14,7 +14,7 @@ def fluents_with_quantity(clause: Clause, quantity: str) -> Iterator[tuple[Fluen
     These are the slots of the predicate or of the condition.
     """
     for fluent in fluents_of(clause):
-        for stated in (fluent, *(() if fluent.condition is None else (fluent.condition,))):
+        for stated in (fluent, *(() if fluent.condition is None else fluent.condition.parts)):
             if quantity in stated.predicate.quantities:
                 slots = tuple(stated.arguments)
                 for chosen in product(*(_elements(stated.arguments[slot]) for slot in slots)):

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.quantity_units import si_factor
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.monitor.joint_condition import joint_arguments, joint_predicate, parts_of
 from robbdd_tools.monitor.judge import WindowEvidence, judge, unit_of
 from robbdd_tools.monitor.time import Window
 from robbdd_tools.monitor.trace import OTHERS
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray, Predicate
     from robbdd_tools.monitor.judge import Regions
@@ -46,13 +47,16 @@ def certain(
     if condition is None:
         verdict = judge(predicate, arguments, constraint, trace, regions)
         return _narrowed(verdict, bound_of(predicate, arguments, trace, regions))
-    doubt = bound_of(*condition, trace, regions)
-    if isinstance(doubt, str):
-        return unknown(doubt, Cause.UNOBSERVED)
+    doubts: list[tuple[Condition, float]] = []
+    for part in parts_of(*condition):
+        doubt = bound_of(*part, trace, regions)
+        if isinstance(doubt, str):
+            return unknown(doubt, Cause.UNOBSERVED)
+        doubts.append((part, doubt))
     margin = bound_of(predicate, arguments, trace, regions)
     perhaps, surely = (
-        judge(predicate, arguments, constraint, trace, regions, _raised(condition, by, trace, regions))
-        for by in (doubt, -doubt)
+        judge(predicate, arguments, constraint, trace, regions, _all_raised(doubts, sign, trace, regions))
+        for sign in (1, -1)
     )
     if surely.outcome is Outcome.VIOLATED:
         return _narrowed(surely, margin)
@@ -114,6 +118,13 @@ def _narrowed(verdict: Verdict, bound: float | str) -> Verdict:
     limit = f"{bound / si_factor(verdict.unit):.3g} {verdict.unit}"
     stated = f"its margin of {verdict.robustness:+.3g} {verdict.unit}"
     return unknown(f"{stated} is within the uncertainty of the measurements, ±{limit}", Cause.UNOBSERVED)
+
+
+def _all_raised(doubts: Sequence[tuple[Condition, float]], sign: int, trace: Trace, regions: Regions) -> Condition:
+    """Return the conjunction of conditions, each with margins that are larger (``sign`` 1) or smaller (-1) by its
+    doubt."""
+    raised = [_raised(condition, sign * doubt, trace, regions) for condition, doubt in doubts]
+    return joint_predicate([predicate for predicate, _ in raised]), joint_arguments([own for _, own in raised])
 
 
 def _raised(condition: Condition, by: float, trace: Trace, regions: Regions) -> Condition:

@@ -128,8 +128,14 @@ def occurrence_times(constraint: Before | After, trace: Trace) -> tuple[float, .
     if not constraint.which:
         time = trace.event_time(constraint.event, constraint.iteration)
         missing = _missing(trace, constraint.event, constraint.iteration)
-        return _pending(constraint, trace) or (missing if time is None else (time,))
+        doubtful = _doubtful(trace, constraint.event, (constraint.iteration, constraint.iteration), time)
+        return _pending(constraint, trace) or doubtful or (missing if time is None else (time,))
     times = trace.event_times(constraint.event, constraint.scope)
+    doubtful = _doubtful(
+        trace, constraint.event, constraint.scope, times[0] if constraint.which == "first" and times else None
+    )
+    if doubtful is not None:
+        return doubtful
     if constraint.which != "first" and (not trace.finished or constraint.event in trace.pending):
         return _uncertain(trace, constraint.event)
     if not times:
@@ -144,6 +150,9 @@ def interval(constraint: During, trace: Trace) -> tuple[float, float] | NoWindow
         return pending
     (start, first), (end, last) = occurrences(constraint)
     begin, finish = trace.event_time(start, first), trace.event_time(end, last)
+    doubtful = _doubtful(trace, start, (first, first), begin) or _doubtful(trace, end, (last, last), finish)
+    if doubtful is not None:
+        return doubtful
     if begin is None:
         return _missing(trace, start, first)
     if finish is None:
@@ -205,6 +214,12 @@ def _uncertain(trace: Trace, event: str) -> NoWindow:
     return NoWindow(reason, not trace.finished)
 
 
+def _doubtful(trace: Trace, event: str, scope: tuple[int, int], time: float | None) -> NoWindow | None:
+    """Return the reason why the time of an event is not known. ``time`` (s) is that of its first known occurrence."""
+    doubt = trace.doubt(event, scope, time)
+    return None if doubt is None else NoWindow(str(doubt), not trace.finished)
+
+
 def _before(trace: Trace, constraint: Before, time: float) -> Window | NoWindow:
     event, horizon = constraint.event, constraint.horizon
     last = trace.last_at_or_before(time + TOLERANCE)
@@ -246,5 +261,6 @@ def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:
     where = f" in iteration {iteration}" if iteration > 0 else ""
     if iteration == LAST and executions > 1:
         where = f" in the last of {executions} executions"
-    why = f": {trace.remark}" if trace.remark else ""
+    remark = trace.defined.get(event) or trace.remark
+    why = f": {remark}" if remark else ""
     return f"event {event} never occurred{where}{why}"

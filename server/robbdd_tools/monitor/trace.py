@@ -35,6 +35,24 @@ class EventStamp:
 
 
 @dataclass(frozen=True, slots=True)
+class Doubt:
+    """A span of time (s) in which a defined event may have occurred without being observed.
+
+    ``iterations`` are the first and the last iteration to which such an occurrence may belong; 0 for all.
+    """
+
+    name: str
+    since: float
+    until: float
+    iterations: tuple[int, int] = (0, 0)
+    reason: str = ""
+
+    def __str__(self) -> str:
+        why = f": {self.reason}" if self.reason else ""
+        return f"it is not known whether event {self.name} occurred from {self.since:.2f} s to {self.until:.2f} s{why}"
+
+
+@dataclass(frozen=True, slots=True)
 class Sample:
     """The state of the world at one instant. It maps names to positions and orientations.
 
@@ -77,6 +95,8 @@ class Trace:
       opens.
     - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
     - ``pending``: the events that could occur again if the execution continued.
+    - ``defined``: the events that the model defines by conditions, each with a remark if it does not occur.
+    - ``doubts``: when these events may have occurred without being observed.
     - ``log``: the name of the log from which the samples are; empty for a simulation. Only the trace of a log can lack
       values, which are NaN.
     - ``uncertain``: the largest errors of the measurements of a log, in SI units, if they are stated: of the position
@@ -113,6 +133,8 @@ class Trace:
     joint_clearances: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
     openings: Mapping[str, OpeningRecord | str] = field(default_factory=dict[str, "OpeningRecord | str"])
     uncertain: Mapping[str, float] = field(default_factory=dict[str, float])
+    defined: Mapping[str, str] = field(default_factory=dict[str, str])
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def end(self) -> float:
@@ -151,6 +173,19 @@ class Trace:
                 stamp.time for stamp in stamps if not first or not stamp.iteration or first <= stamp.iteration <= last
             )
         )
+
+    def doubt(self, name: str, scope: tuple[int, int] = (0, 0), before: float | None = None) -> Doubt | None:
+        """Return the first span in which an event may have occurred unobserved in the iterations ``scope``, if any.
+
+        ``scope`` has the same meaning as in ``event_times``. Spans that do not begin ``before`` a time (s) are ignored.
+        """
+        first, last = scope
+        for one in self.doubts:
+            low, high = one.iterations
+            is_meant = first <= 0 or not high or (low <= last and first <= high)
+            if one.name == name and is_meant and (before is None or one.since < before):
+                return one
+        return None
 
     def first_at_or_after(self, time: float) -> int:
         """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` if there is none."""

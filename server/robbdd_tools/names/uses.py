@@ -75,7 +75,7 @@ def clauses_of(declaration: Declaration) -> tuple[Clauses, ...]:
     """Return the clauses of a template, or of each variant of a story; empty for any other declaration."""
     match declaration.tree:
         case tree.Template() as template:
-            return (_collected(template, template.name.text, (template.duration, template.body)),)
+            return (_collected(template, template.name.text, (template.duration, *template.events, template.body)),)
         case tree.Story() as story:
             return tuple(_of_variant(variant, f"{story.name.text}.{variant.name.text}") for variant in story.variants)
         case tree.Variant() as variant:
@@ -118,8 +118,13 @@ class _Collector:
             case tree.Fluent():
                 self.visit(node.time, bound, repeated=repeated)
                 self._phrase(node.predicate, bound)
-                if node.condition is not None:
-                    self._phrase(node.condition, bound)
+                for condition in node.conditions:
+                    self._phrase(condition, bound)
+            case tree.DefinedEvent():
+                for condition in node.conditions:
+                    self._phrase(condition, bound)
+                if isinstance(node.seconds, tree.Ref):
+                    self.uses.append(Use(node.seconds, SECONDS, SECONDS_PHRASE, None))
             case tree.TextClause():
                 self.visit(node.time, bound, repeated=repeated)
             case tree.Before(horizon=tree.Ref() as seconds) | tree.After(horizon=tree.Ref() as seconds):

@@ -6,11 +6,12 @@ the manifest. It parses a sentence only if a person wrote it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.joint_condition import joint_arguments, joint_predicate, parts_of
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -32,10 +33,23 @@ Filler = str | tuple[str, ...] | AnyOf
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """The predicate of ``whenever``, with the values of its slots."""
+    """The predicate of ``whenever``, with the values of its slots. Several predicates are joined to one."""
 
     predicate: Predicate
     arguments: Mapping[str, Filler]
+
+    @property
+    def parts(self) -> list[Condition]:
+        """Its predicates, each with its own slots."""
+        return [Condition(predicate, own) for predicate, own in parts_of(self.predicate, self.arguments)]
+
+
+def joint_condition(conditions: Sequence[Condition]) -> Condition | None:
+    """Return several conditions as one; ``None`` if there is none."""
+    if not conditions:
+        return None
+    predicate = joint_predicate([one.predicate for one in conditions])
+    return Condition(predicate, joint_arguments([one.arguments for one in conditions]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +66,18 @@ class Fluent:
     iri: str = ""
     named: Mapping[str, Any] = field(default_factory=dict[str, Any])
     condition: Condition | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DefinedEvent:
+    """An event that occurs when all conditions have become true, or have been true for ``seconds``.
+
+    The time constraint of a condition names the event, too, and has no further meaning.
+    """
+
+    name: str
+    conditions: tuple[Fluent, ...]
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,8 +201,8 @@ def _clause(data: Mapping[str, Any]) -> Clause:
 def _leaf(leaf: Fluent | Text) -> dict[str, Any]:
     found: dict[str, Any] = {} if leaf.time is None else {"time": _plain_time(leaf.time)}
     if leaf.condition is not None:
-        arguments = _plain_arguments(leaf.condition.arguments)
-        found["whenever"] = {"predicate": leaf.condition.predicate.name, "arguments": arguments}
+        parts = [_plain_condition(one) for one in leaf.condition.parts]
+        found["whenever"] = parts[0] if len(parts) == 1 else {"all": parts}
     return {**found, "iri": leaf.iri, **({"named": dict(leaf.named)} if leaf.named else {})}
 
 
@@ -184,7 +210,14 @@ def _condition(data: Mapping[str, Any]) -> Condition | None:
     found = data.get("whenever")
     if found is None:
         return None
-    return Condition(load_catalog().predicates[found["predicate"]], _arguments(found["arguments"]))
+    parts = found.get("all", [found])
+    catalog = load_catalog()
+    each = [Condition(catalog.predicates[one["predicate"]], _arguments(one["arguments"])) for one in parts]
+    return joint_condition(each)
+
+
+def _plain_condition(condition: Condition) -> dict[str, Any]:
+    return {"predicate": condition.predicate.name, "arguments": _plain_arguments(condition.arguments)}
 
 
 def _plain_arguments(arguments: Mapping[str, Filler]) -> dict[str, object]:

@@ -20,7 +20,7 @@ from robbdd_tools.base.writing import replacing
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.robot_faults import RobotFault
-from robbdd_tools.protocol.clauses import Statement, to_plain
+from robbdd_tools.protocol.clauses import DefinedEvent, Fluent, Statement, to_plain
 from robbdd_tools.protocol.clauses import from_plain as statement_from_plain
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
 
@@ -85,6 +85,7 @@ def read_scenario(
     clauses = entry.pop("clauses")
     execution, tree = entry.pop("execution", None), entry.pop("tree", None)
     instance, fault = entry.pop("chosen_instance", None), entry.pop("fault", None)
+    defined = tuple(_defined(one) for one in entry.pop("defined", ()))
     return ScenarioSpec(
         scene=SceneSpec(
             tuple(scene["objects"]),
@@ -102,6 +103,7 @@ def read_scenario(
         tree=None if tree is None else trees[tree],
         chosen_instance=None if instance is None else instances[instance],
         fault=None if fault is None else from_plain(RobotFault, fault),
+        defined=defined,
         **entry,
     )
 
@@ -112,6 +114,14 @@ def _clause(entry: dict[str, Any]) -> ClauseSpec:
     statement = entry.pop("statement", None)
     found = from_plain(ClauseSpec, entry)
     return found if statement is None else replace(found, statement=statement_from_plain(statement))
+
+
+def _defined(entry: dict[str, Any]) -> DefinedEvent:
+    conditions = tuple(map(statement_from_plain, entry["conditions"]))
+    fluents = tuple(one for one in conditions if isinstance(one, Fluent))
+    if not fluents or len(fluents) < len(conditions):
+        raise ValueError(f"{entry!r} is not the definition of an event")
+    return DefinedEvent(entry["name"], fluents, entry["seconds"])
 
 
 def _json(value: object) -> str:

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-from robbdd_tools.protocol.clauses import EventOccurrence, to_plain
+from robbdd_tools.monitor.time import occurrences
+from robbdd_tools.protocol.clauses import EventOccurrence, Fluent, Junction, Text, leaves_of, to_plain
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.coordination import TreeSpec
@@ -78,11 +79,28 @@ def _content(clause: ClauseSpec) -> object:
 
 def _by_iri(spec: ScenarioSpec) -> dict[str, list[object]]:
     policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
+    defined = {event.name: _bare(event) for event in spec.defined}
     found: dict[str, list[object]] = {}
     for clause in spec.clauses:
         own = [_bare(policies[iri]) for iri in (clause.parts or (clause.iri,)) if iri in policies]
-        found.setdefault(clause.iri, []).append((clause.role, _content(clause), list(clause.iterations), own))
+        found.setdefault(clause.iri, []).append(
+            (clause.role, _content(clause), list(clause.iterations), own, _events(clause, defined))
+        )
     return found
+
+
+def _events(clause: ClauseSpec, defined: Mapping[str, object]) -> list[object]:
+    """Return the definitions of the events that a clause names."""
+    names: set[str] = set()
+    match clause.statement:
+        case EventOccurrence(event):
+            names = {event}
+        case Fluent() | Text() | Junction() as stated:
+            times = [leaf.time for leaf in leaves_of(stated) if leaf.time is not None]
+            names = {event for time in times for event, _ in occurrences(time)}
+        case _:
+            pass
+    return [defined[name] for name in sorted(names) if name in defined]
 
 
 def _tree(tree: TreeSpec | None) -> object:

@@ -11,7 +11,7 @@ from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import ChosenScene, Implementation, SceneInstance, Substitution
 from robbdd_tools.catalog.robot_faults import RobotFault
 from robbdd_tools.monitor.policy import Policy
-from robbdd_tools.protocol.clauses import Statement
+from robbdd_tools.protocol.clauses import DefinedEvent, Statement
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +100,7 @@ class ScenarioSpec:
 
     - ``events``: maps the CURIE of an event to its emitter: ``scenario-start``, ``scenario-end`` or the name of an
       event of the behaviour (``pick-start`` …).
+    - ``defined``: the events that the template defines by conditions. In ``events``, their emitter is ``defined``.
     - ``seed``: determines all randomness of the execution.
     - ``execution``: the execution of a ``.bddx``; ``None`` if the scenario is run without one.
     - ``repetition``: its number (from 1). Repetitions have the same scenario in the feature but different seeds.
@@ -129,6 +130,7 @@ class ScenarioSpec:
     node: str = ""
     chosen_instance: SceneInstance | None = None
     fault: RobotFault | None = None
+    defined: tuple[DefinedEvent, ...] = ()
 
     @property
     def instance(self) -> SceneInstance | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.coordination import END, EXTERNAL, START, emitter
+from robbdd_tools.catalog.coordination import DEFINED, END, EXTERNAL, START, emitter
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
@@ -32,7 +32,8 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
 
     If a When has several behaviours, their events are distinguished by the IRIs of their clauses. An event that ends
     one of them and starts another is emitted by the first. A name that fits events of several behaviours fits none. An
-    awaited event without an emitter is external: only a log can report it.
+    awaited event without an emitter is external: only a log can report it. An event that the template defines by
+    conditions is found in the trace.
     """
     template = variant.template
     bound = {template.start: "scenario-start", template.end: "scenario-end"}
@@ -54,7 +55,8 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
         for clause in clauses:
             if isinstance(clause, EventClause):
                 bound.setdefault(clause.event, EXTERNAL)
-    return bound
+    # Of an event that is defined and emitted, too, only the definition counts (diagnostic ``defined-event``).
+    return bound | {event.iri: DEFINED for event in template.events}
 
 
 def _limits(clause: BehaviourClause, linked: Linked | None) -> tuple[str, str]:

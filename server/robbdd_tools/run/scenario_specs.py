@@ -23,9 +23,10 @@ from robbdd_tools.graph.acceptance_model import (
     SceneModel,
     Variant,
 )
-from robbdd_tools.graph.read.clauses import used_names
+from robbdd_tools.graph.acceptance_model import DefinedEvent as ModelEvent
+from robbdd_tools.graph.read.clauses import names_in_events, used_names
 from robbdd_tools.monitor.policy import Observation, Policy
-from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, leaves_of
+from robbdd_tools.protocol.clauses import BehaviourCall, DefinedEvent, EventOccurrence, leaves_of
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.run.emitters import emitters_of
@@ -42,6 +43,7 @@ class _Shared:
     """The data that all scenarios of a variant have in common."""
 
     clauses: tuple[Clause, ...]
+    defined: tuple[ModelEvent, ...]
     objects: tuple[Iri, ...]
     workspaces: Mapping[str, tuple[str, ...]]
     contains: Mapping[str, tuple[str, ...]]
@@ -150,7 +152,12 @@ class SpecWriter:
             execution=self.execution,
             model=self._name,
             chosen_instance=shared.instance,
+            defined=self._defined(variant, scenario.values),
         )
+
+    def _defined(self, variant: Variant, values: Values) -> tuple[DefinedEvent, ...]:
+        found = (self._binder.defined_event(event, values) for event in variant.template.events)
+        return tuple(event for event in found if event is not None)
 
     def _known(self, variant: Variant) -> _Shared:
         shared = self._variants.get(variant.iri)
@@ -184,6 +191,7 @@ class SpecWriter:
         scene = variant.scene
         return _Shared(
             (*variant.template.clauses, *variant.clauses),
+            variant.template.events,
             (*scene.objects, *(thing for carriers in scene.carriers.values() for thing in carriers)),
             self._named(scene.carriers),
             self._named(scene.contains),
@@ -199,7 +207,7 @@ class SpecWriter:
         places: dict[str, str] = {}
         config: list[ConfigSpec] = []
         for fluent, inner in _givens(self._model, shared.clauses, values):
-            if fluent.condition is not None:
+            if fluent.conditions:
                 continue
             if fluent.predicate == "located-at":
                 thing, place = (_value(fluent.arguments[slot], inner) for slot in ("object", "workspace"))
@@ -224,7 +232,8 @@ class SpecWriter:
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:
         """Return the elements that values and clauses use, and those objects among them that carry workspaces."""
-        named = [iri for name in used_names(shared.clauses) for iri in (name, *self._model.sets.get(name, ()))]
+        terms = (*used_names(shared.clauses), *names_in_events(shared.defined))
+        named = [iri for name in terms for iri in (name, *self._model.sets.get(name, ()))]
         used = {self._curie(str(name)) for name in (*extra, *named)}
         waiting = [name for name in used if name in shared.workspaces or name in shared.contains]
         while waiting:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robbdd_tools.syntax.scene_tree import (
-    Link,
     Name,
     NamespaceArgument,
     Node,
@@ -18,6 +17,7 @@ from robbdd_tools.syntax.scene_tree import (
     Where,
 )
 from robbdd_tools.syntax.time_tree import During, TimeConstraint
+from robbdd_tools.syntax.variation_tree import Product, Table, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +34,6 @@ class Task(Node):
 
     namespace: NamespaceArgument | None
     name: Name
-
-
-Value = Ref | Quantity | Number | Text
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +79,11 @@ class TextPredicate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Fluent(Node):
-    """``name: holds(predicate [whenever condition], time constraint)``; a missing name is generated (``published``)."""
+    """``name: holds(predicate [whenever conditions], time constraint)``; ``published`` generates a missing name."""
 
     name: Name
     predicate: PhraseUse | TextPredicate
-    condition: PhraseUse | None
+    conditions: tuple[PhraseUse, ...]
     time: TimeConstraint
 
 
@@ -219,6 +216,15 @@ class Body(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class DefinedEvent(Node):
+    """``event name when conditions [for h seconds]``: occurs when all conditions become true."""
+
+    name: Name
+    conditions: tuple[PhraseUse, ...]
+    seconds: Number | Ref | None
+
+
+@dataclass(frozen=True, slots=True)
 class Template(Node):
     """``Scenario Template (ns=…) name { … }``."""
 
@@ -227,6 +233,7 @@ class Template(Node):
     duration: During | None
     task: Ref | None
     variables: tuple[Variable, ...]
+    events: tuple[DefinedEvent, ...]
     body: Body
 
 
@@ -260,64 +267,6 @@ class BehaviourTree(Node):
     name: Name
     source: PythonAttribute | None
     nodes: tuple[TreeNode, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ValueList(Node):
-    """``{ value, value }``."""
-
-    values: tuple[Value, ...]
-
-
-SetExpression = Link | ValueList
-
-
-@dataclass(frozen=True, slots=True)
-class Selection(Node):
-    """``select N [repeated] combinations|permutations from <set> [where …]``."""
-
-    count: Number
-    repeated: bool
-    kind: str
-    source: Ref
-    where: Where | None
-
-
-@dataclass(frozen=True, slots=True)
-class SetList(Node):
-    """``{ { … }, { … } }``."""
-
-    sets: tuple[ValueList, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment(Node):
-    """``var <v>: SET`` or ``set var <v>: SETS``."""
-
-    variable: Ref
-    choices: SetExpression | Selection | SetList
-
-
-@dataclass(frozen=True, slots=True)
-class Product(Node):
-    """Cartesian product of the assignments."""
-
-    assignments: tuple[Assignment, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class TableRow(Node):
-    """One row of values."""
-
-    cells: tuple[Value | SetExpression, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Table(Node):
-    """Header of variables and rows of values."""
-
-    header: tuple[Ref, ...]
-    rows: tuple[TableRow, ...]
 
 
 @dataclass(frozen=True, slots=True)

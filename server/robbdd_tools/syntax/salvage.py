@@ -43,7 +43,7 @@ _HEADERS = (
 _WITHOUT_IRI = {SymbolKind.NAMESPACE, SymbolKind.TREE_TEMPLATE}
 _SCENARIO = re.compile(rf"\w+\s+(?:Variant\s+)?{_NAME}\s*{{")
 _PART = re.compile(
-    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|node|sequence|selector)\s+(?P<name>[^\W\d][\w\-]*)"
+    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|event|node|sequence|selector)\s+(?P<name>[^\W\d][\w\-]*)"
     r"|(?P<fluent>[^\W\d][\w\-]*)\s*:\s*holds\b)"
 )
 _PARTS = {
@@ -52,6 +52,7 @@ _PARTS = {
     "agent": SymbolKind.AGENT,
     "var": SymbolKind.VARIABLE,
     "set var": SymbolKind.SET_VARIABLE,
+    "event": SymbolKind.EVENT,
     "node": SymbolKind.TREE_NODE,
     "sequence": SymbolKind.TREE_NODE,
     "selector": SymbolKind.TREE_NODE,

@@ -72,6 +72,8 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
             for variable in root.variables:
                 kind = SymbolKind.SET_VARIABLE if variable.is_set else SymbolKind.VARIABLE
                 yield _symbol(path, variable.name, kind, variable.span, namespace)
+            for event in root.events:
+                yield _symbol(path, event.name, SymbolKind.EVENT, event.span, namespace)
             yield from _clauses(root.body, path, namespace)
         case tree.Story():
             for variant in root.variants:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from robbdd_tools.syntax.bdd_tree import (
-    Assignment,
     BehaviourTree,
     BehaviourUse,
     Body,
     Conjunction,
     ConstantSet,
+    DefinedEvent,
     Disjunction,
     Emission,
     Event,
@@ -20,13 +20,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Negation,
     Occurrence,
     PhraseUse,
-    Product,
-    Selection,
-    SetExpression,
-    SetList,
     Story,
-    Table,
-    TableRow,
     Task,
     Template,
     TextArgument,
@@ -35,8 +29,6 @@ from robbdd_tools.syntax.bdd_tree import (
     TreeComposite,
     TreeLeaf,
     TreeNode,
-    Value,
-    ValueList,
     Variable,
     Variant,
     When,
@@ -139,6 +131,17 @@ from robbdd_tools.syntax.scenex_tree import (
     UniformRotation,
 )
 from robbdd_tools.syntax.time_tree import After, Before, During, TimeConstraint
+from robbdd_tools.syntax.variation_tree import (
+    Assignment,
+    Product,
+    Selection,
+    SetExpression,
+    SetList,
+    Table,
+    TableRow,
+    Value,
+    ValueList,
+)
 
 DeclarationTree = (
     Import
@@ -184,6 +187,7 @@ __all__ = [
     "ConstantSet",
     "CorrectFor",
     "DeclarationTree",
+    "DefinedEvent",
     "DirectionCosines",
     "Disjunction",
     "Distance",

@@ -13,7 +13,7 @@ from robbdd_tools.base.articulation import OpeningRecord
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.judge import Regions
-from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.monitor.trace import Doubt, EventStamp, Trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Evidence:
 
 
 KINDS: Mapping[str, Any] = {
-    kind.__name__: kind for kind in (Evidence, Trace, Contact, EventStamp, Region, OpeningRecord)
+    kind.__name__: kind for kind in (Evidence, Trace, Contact, Doubt, EventStamp, Region, OpeningRecord)
 }
 """The dataclasses that may occur; others cannot be restored."""
 

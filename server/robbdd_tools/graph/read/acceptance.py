@@ -20,7 +20,7 @@ from robbdd_tools.graph.rdf.prefixes import reading_prefixes
 from robbdd_tools.graph.rdf.records import Incomplete, Records
 from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
 from robbdd_tools.graph.read.behaviour_trees import read_trees
-from robbdd_tools.graph.read.clauses import ClauseReader, used_names
+from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_names
 from robbdd_tools.graph.read.executions import read_executions
 from robbdd_tools.graph.read.instances import InstanceReader, Places
 from robbdd_tools.graph.read.variations import VariationReader
@@ -130,7 +130,7 @@ class _Reader:
         template = self._template(self.records.one(node, "bdd:of-template"))
         extra = self._extra_clauses(node)
         variation = self.variations.variation(self.records.one(node, "bdd:has-variation"))
-        for name in used_names((*template.clauses, *extra)):
+        for name in (*used_names((*template.clauses, *extra)), *names_in_events(template.events)):
             if self.records.is_a(name, "bdd:ScenarioVariable") and name not in variation.variables:
                 raise Incomplete(f"{node} gives {name} no value")
         scenes = self.records.iris(self.records.all(node, "rbw:scene"))
@@ -145,7 +145,7 @@ class _Reader:
 
     def _template(self, node: Iri) -> Template:
         start, end = (self.records.one(node, f"time:{side}-event") for side in ("after", "before"))
-        return Template(node, self.clauses.clauses(node), start, end)
+        return Template(node, self.clauses.clauses(node), start, end, self.clauses.events(node))
 
     def _scene(self, variant: Iri) -> SceneModel:
         members: dict[str, dict[Iri, None]] = {kind: {} for kind in MEMBERSHIPS}

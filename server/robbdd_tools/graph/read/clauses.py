@@ -12,6 +12,7 @@ from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
     Clause,
     Condition,
+    DefinedEvent,
     EventClause,
     Exists,
     Fluent,
@@ -22,7 +23,15 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, JUNCTIONS, OCCURRENCE, SOME_TIME, TOGETHER, expand
+from robbdd_tools.graph.rdf.vocabulary import (
+    EVENT_LIST,
+    HORIZON_VARIABLE,
+    JUNCTIONS,
+    OCCURRENCE,
+    SOME_TIME,
+    TOGETHER,
+    expand,
+)
 from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -81,8 +90,8 @@ class ClauseReader:
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
                 arguments = self._arguments(iri, word.slots)
-                time, condition = self.time(iri), self._condition(iri)
-                return Fluent(iri, role, word.name, arguments, time, condition, self._seconds(iri))
+                time, conditions = self.time(iri), self._conditions(iri, "rbw:whenever")
+                return Fluent(iri, role, word.name, arguments, time, conditions, self._seconds(iri))
         raise Incomplete(f"{iri} has no predicate that this installation knows")
 
     def _text_fluent(self, iri: Iri, role: str) -> TextFluent:
@@ -92,13 +101,27 @@ class ClauseReader:
             raise Incomplete(f"{iri} has {len(names)} argument names for {len(variables)} variables")
         template = self.records.text(iri, "bdd:template-string")
         arguments = dict(zip(names, variables, strict=True))
-        time, condition = self.time(iri), self._condition(iri)
-        return TextFluent(iri, role, template, arguments, time, condition, self._seconds(iri))
+        time, conditions = self.time(iri), self._conditions(iri, "rbw:whenever")
+        return TextFluent(iri, role, template, arguments, time, conditions, self._seconds(iri))
 
-    def _condition(self, fluent: Iri) -> Condition | None:
-        if not self.records.all(fluent, "rbw:whenever"):
-            return None
-        iri = self.records.one(fluent, "rbw:whenever")
+    def events(self, template: str) -> tuple[DefinedEvent, ...]:
+        """Return the events that a template defines, in written order. Raises ``Incomplete``."""
+        return tuple(map(self._event, self.records.iris(items_of(self.records, template, EVENT_LIST))))
+
+    def _event(self, iri: Iri) -> DefinedEvent:
+        conditions = self._conditions(iri, "rbw:occurs-when")
+        seconds = self.records.literal(iri, "time:horizon-seconds")
+        variables = self.records.iris(self.records.all(iri, HORIZON_VARIABLE))
+        if not conditions or len(variables) + (seconds is not None) > 1 or isinstance(seconds, str):
+            raise Incomplete(f"{iri} does not state when it occurs")
+        return DefinedEvent(iri, conditions, seconds or 0.0, *variables)
+
+    def _conditions(self, owner: Iri, term: str) -> tuple[Condition, ...]:
+        """Return the conditions of a clause or event. The numbers of generated names are their order."""
+        nodes = self.records.iris(self.records.all(owner, term))
+        return tuple(self._condition(node) for node in sorted(nodes, key=lambda node: (len(node), node)))
+
+    def _condition(self, iri: Iri) -> Condition:
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
                 return Condition(iri, word.name, self._arguments(iri, word.slots))
@@ -174,13 +197,21 @@ def _linked(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
     return tuple(replace(one, has_siblings=True) if isinstance(one, BehaviourClause) else one for one in clauses)
 
 
+def names_in_events(events: Iterable[DefinedEvent]) -> Iterator[Iri]:
+    """Yield the references in the definitions of events."""
+    for event in events:
+        yield from [] if event.variable is None else [event.variable]
+        arguments = (one for condition in event.conditions for one in condition.arguments.values())
+        yield from (argument for argument in arguments if isinstance(argument, Iri))
+
+
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
     """Yield the references in the arguments of clauses, but not the variables of quantifiers."""
     for clause in clauses:
         match clause:
             case Fluent() | TextFluent() | BehaviourClause():
-                condition = None if isinstance(clause, BehaviourClause) else clause.condition
-                values = (*clause.arguments.values(), *(condition.arguments.values() if condition else ()))
+                conditions = () if isinstance(clause, BehaviourClause) else clause.conditions
+                values = (*clause.arguments.values(), *(one for each in conditions for one in each.arguments.values()))
                 yield from (argument for argument in values if isinstance(argument, Iri))
             case Junction():
                 yield from used_names(clause.operands)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from robbdd_tools.catalog.api import Behaviour, Kind, Predicate
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import Iri
-from robbdd_tools.graph.rdf.records import Records
-from robbdd_tools.graph.rdf.vocabulary import HORIZON_VARIABLE, expand
+from robbdd_tools.graph.rdf.records import Records, items_of
+from robbdd_tools.graph.rdf.vocabulary import EVENT_LIST, HORIZON_VARIABLE, expand
 
 ELEMENT_OF_KIND = {
     Kind.OBJECT: "object",
@@ -49,12 +49,15 @@ def value_shape(dimension: str) -> str:
 def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
     """Yield all clauses of some owners once, including those inside groups and quantifiers. Outer clauses are first.
 
-    The condition of a clause counts as a clause.
+    Conditions count as clauses, and so do events that a template defines.
     """
     seen: set[str] = set()
     waiting = list(owners)
     while waiting:
         owner = waiting.pop(0)
+        for event in records.iris(items_of(records, owner, EVENT_LIST)):
+            yield event
+            yield from records.iris(records.all(event, "rbw:occurs-when"))
         for term in ("bdd:has-clause", "rbw:operands"):
             heads = records.all(owner, term)
             for clause in records.iris((records.items(heads[0]) if heads else None) or ()):

@@ -11,6 +11,8 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
     Clause,
+    Condition,
+    DefinedEvent,
     EventClause,
     Exists,
     Fluent,
@@ -140,11 +142,20 @@ class ClauseText:
         return f"pred({quoted(clause.template)}{arguments})"
 
     def _condition(self, clause: Fluent | TextFluent, name: str) -> str:
-        condition = clause.condition
-        if condition is None:
-            return ""
-        self._named(condition.iri, "whenever", f".{name}")
-        return f" whenever {self._phrase(load_catalog().predicates[condition.predicate].phrase, condition.arguments)}"
+        return f" whenever {self._conditions(clause.conditions, 'whenever', name)}" if clause.conditions else ""
+
+    def defined_event(self, event: DefinedEvent) -> str:
+        """Return the definition of an event of a template as text."""
+        name = self.names.paths[event.iri].rpartition(".")[2]
+        seconds = f"{event.seconds:g}" if event.variable is None else self._variable(event.variable)
+        lasting = f" for {seconds} seconds" if event.seconds or event.variable is not None else ""
+        return f"event {name} when {self._conditions(event.conditions, 'occurs-when', name)}{lasting}"
+
+    def _conditions(self, conditions: Sequence[Condition], kind: str, name: str) -> str:
+        for number, one in enumerate(conditions):
+            self._named(one.iri, kind, f".{name}{f'.{number}' if number else ''}")
+        phrases = load_catalog().predicates
+        return " and ".join(self._phrase(phrases[one.predicate].phrase, one.arguments) for one in conditions)
 
     def _phrase(self, phrase: str, arguments: Mapping[str, Iri | str]) -> str:
         return _SLOT.sub(lambda match: self._argument(arguments[match[1] or match[2]]), phrase)
@@ -230,6 +241,7 @@ def template_text(names: Names, reader: ClauseReader, template: Iri, variables: 
     for scenario in records.iris(records.all(template, "bdd:of-scenario")):
         for task in records.iris(records.all(scenario, "task:of-task"))[:1]:
             head += f"task: {names.lazily(task, 'task')}\n"
+    lines += [f"{writer.defined_event(event)}\n" for event in reader.events(template)]
     body = writer.body(reader.clauses(template))
     inner = indented((head + "".join(lines) + body).rstrip())
     return f"Scenario Template (ns={names.prefix(namespace)}) {name} {{\n{inner}\n}}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.graph.acceptance_model import ForAll, Iri
 from robbdd_tools.graph.rdf.prefixes import user_prefixes
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
+from robbdd_tools.graph.rdf.vocabulary import EVENT_LIST
 from robbdd_tools.graph.read.acceptance import story_order
 from robbdd_tools.graph.read.clauses import ClauseReader, used_names
 from robbdd_tools.graph.text.behaviour_trees import tree_text
@@ -27,6 +28,7 @@ OWL_INSTANT = "http://www.w3.org/2006/time#Instant"
 _LARGER = (
     *("bdd:ScenarioTemplate", "bdd:UserStory", "bdd:ScenarioVariant", "bdd:FluentClause", "bdd:ScenarioVariable"),
     *("bdd:Scene", "bdd:Set", "bhv:Behaviour", "bt:BehaviourTree", "env:Object", "env:Workspace", "agn:Agent"),
+    "rbw:DefinedEvent",
 )
 """Types of nodes that are not written as events or tasks, even if they also have such a type, which is then lost."""
 
@@ -88,6 +90,8 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
     templates, stories = records.instances("bdd:ScenarioTemplate"), story_order(records)
     for node in templates:
         names.declare(node, "template")
+        for event in records.iris(items_of(records, node, EVENT_LIST)):
+            names.declare(event, "event", owner=names.paths[node], namespace=names.split(node)[0])
     for node in stories:
         names.declare(node, "story")
     reader = ClauseReader(records)

@@ -217,6 +217,7 @@ def _add_template(frame: Frame, selected: PropertySets, template: tree.Template,
     _add_variables(frame, node, template)
     writer = ClauseWriter(frame, selected, namespace_of(node, template.name.text), template.name.text, scenario)
     sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))
+    writer.events(node, template.events)
 
 
 def _add_scenario(sink: Sink, scenario: URIRef, place: Location) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.rdf.vocabulary import (
+    EVENT_LIST,
     FURTHER_BEHAVIOUR,
     HORIZON_VARIABLE,
     JUNCTIONS,
@@ -131,18 +132,34 @@ class ClauseWriter:
             word = load_catalog().predicates[fluent.predicate.word]
             self._sink.add_types(node, [word.rdf_type], self.frame.at(fluent.name))
             self._arguments(node, word.slots, fluent.predicate)
-        if fluent.condition is not None:
-            self._condition(node, fluent.name, fluent.condition)
+        self._conditions(node, "rbw:whenever", f"whenever-{self.owner}.{fluent.name.text}", fluent.conditions)
         self._time(node, fluent.time)
         return node
 
-    def _condition(self, fluent: URIRef, name: tree.Name, condition: tree.PhraseUse) -> None:
-        node = self._generated("whenever", f".{name.text}")
-        word = load_catalog().predicates[condition.word]
-        if node is not None:
-            self._sink.add_types(node, ["rbw:Condition", word.rdf_type], self.frame.at(condition))
-            self._arguments(node, word.slots, condition)
-            self._sink.add(fluent, "rbw:whenever", node, self.frame.at(condition))
+    def events(self, template: URIRef, events: Sequence[tree.DefinedEvent]) -> None:
+        """Write the events that a template defines."""
+        nodes: list[Node] = []
+        for event in events:
+            node = self.frame.claimed(f"{self.owner}.{event.name.text}", event.name)
+            if node is not None:
+                at = self.frame.at(event.name)
+                self._sink.add_types(node, ["time:Event", "rbw:DefinedEvent"], at)
+                name = f"occurs-when-{self.owner}.{event.name.text}"
+                self._conditions(node, "rbw:occurs-when", name, event.conditions)
+                add_horizon(self.frame, node, event.seconds)
+                nodes.append(node)
+        if nodes:
+            self._sink.add(template, EVENT_LIST, self._sink.make_list(nodes))
+
+    def _conditions(self, owner: URIRef, term: str, name: str, conditions: Sequence[tree.PhraseUse]) -> None:
+        """Write conditions as nodes of their owner. Further ones have the name of the first one and a number."""
+        for number, condition in enumerate(conditions):
+            node = self._sink.iri(f"{self.namespace}{name}{f'.{number}' if number else ''}")
+            word = load_catalog().predicates[condition.word]
+            if node is not None:
+                self._sink.add_types(node, ["rbw:Condition", word.rdf_type], self.frame.at(condition))
+                self._arguments(node, word.slots, condition)
+                self._sink.add(owner, term, node, self.frame.at(condition))
 
     def _text_predicate(self, node: URIRef, predicate: tree.TextPredicate) -> None:
         sink, at = self._sink, self.frame.at
@@ -274,8 +291,13 @@ def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
     sink.add(node, f"time:{kind}-event", frame.target(time.event), frame.at(time.event))
     if time.which:
         sink.add(node, OCCURRENCE, sink.literal(time.which), frame.at(time.event))
-    if isinstance(time.horizon, tree.Ref):
-        sink.add(node, HORIZON_VARIABLE, frame.target(time.horizon), frame.at(time.horizon))
-    elif time.horizon is not None:
-        horizon = sink.literal(float(time.horizon.value))
-        sink.add(node, "time:horizon-seconds", horizon, frame.at(time.horizon))
+    add_horizon(frame, node, time.horizon)
+
+
+def add_horizon(frame: Frame, node: URIRef, seconds: tree.Number | tree.Ref | None) -> None:
+    """Add a number of seconds, or the variable that has one as its value, to a node."""
+    sink = frame.sink
+    if isinstance(seconds, tree.Ref):
+        sink.add(node, HORIZON_VARIABLE, frame.target(seconds), frame.at(seconds))
+    elif seconds is not None:
+        sink.add(node, "time:horizon-seconds", sink.literal(float(seconds.value)), frame.at(seconds))
