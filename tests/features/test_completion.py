@@ -73,7 +73,9 @@ def test_a_reference_is_closed_when_it_was_not() -> None:
 
 
 def test_variables_of_the_enclosing_template_are_offered_by_their_short_names() -> None:
-    assert labels(edited("<robot> picks", "<$0> picks")) == ["goal", "part", "robot"]
+    found = labels(edited("<robot> picks", "<$0> picks"))
+    assert found[:3] == ["goal", "part", "robot"]
+    assert {"arms.panda", "parts.bolt", "places.tray_ws"} <= set(found[3:])
 
 
 def test_variables_are_qualified_outside_their_template() -> None:
@@ -291,7 +293,7 @@ def test_every_proposal_of_every_kind_is_documented(path: Path) -> None:
 
 def test_completion_works_below_broken_lines_of_the_same_declaration() -> None:
     text = edited("task: <task>", "tusk: <task>").replace("<robot> picks", "<$0> picks", 1)
-    assert labels(text) == ["goal", "part", "robot"]
+    assert labels(text)[:3] == ["goal", "part", "robot"]
 
 
 def test_the_rest_of_a_word_behind_the_cursor_can_be_replaced() -> None:

@@ -110,11 +110,20 @@ def test_a_value_of_an_open_variable_may_be_anything() -> None:
 
 def test_variables_that_fit_a_slot_come_first() -> None:
     start = edited("<robot> picks <part> and places at <goal>", "<robot> picks <$0")
-    assert labels(start) == ["part", "robot", "goal"]
+    objects = [
+        "furniture.bench",
+        "furniture.tray",
+        "parts.bolt",
+        "parts.nut",
+        *(f"washers.washer{n}" for n in range(3)),
+    ]
+    assert labels(start) == ["part", "robot", "goal", *objects]
     assert labels(edited("<robot> picks <$0", "<robot> picks <part> and places at <$0", start)) == [
         "goal",
         "part",
         "robot",
+        "places.bench_ws",
+        "places.tray_ws",
     ]
     unknown = edited("var goal\n", "var goal\n    var zone\n", start)
-    assert labels(unknown) == ["part", "robot", "zone", "goal"]
+    assert labels(unknown) == ["part", "robot", "zone", "goal", *objects]

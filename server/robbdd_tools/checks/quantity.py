@@ -62,7 +62,7 @@ def _values(scenario: Scenario) -> Iterator[Diagnostic]:
                         break
 
 
-def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Ref | tree.Name | tree.Quantity]]:
+def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Argument]]:
     """Yield the slots for quantities in clauses, with what fills them."""
     catalog = load_catalog()
     for phrase in clauses.phrases:

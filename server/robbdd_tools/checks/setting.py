@@ -18,8 +18,9 @@ from robbdd_tools.catalog.settings import SETTINGS, Setting, SettingError, setti
 from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import article, change, finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
+from robbdd_tools.names.elements import element_of
 from robbdd_tools.names.types import Written, variable_key
-from robbdd_tools.names.uses import Clauses, clauses_of
+from robbdd_tools.names.uses import ELEMENTS, Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -47,6 +48,8 @@ def setting(site: Site) -> Iterator[Diagnostic]:
         for use in _uses(clauses):
             if use.name.text not in SETTINGS:
                 yield _unknown(site, use.name)
+            else:
+                yield from _stated(site, use)
     for scenario in scenarios(site):
         yield from _misfits(scenario)
         yield from _wrong_targets(scenario)
@@ -59,7 +62,7 @@ class _Use:
         slots = dict(phrase.arguments)
         name, value, target = slots["name"], slots["value"], slots["target"]
         assert isinstance(name, tree.Name)
-        assert isinstance(value, tree.Ref)
+        assert isinstance(value, tree.Ref | tree.Number | tree.Text)
         assert isinstance(target, tree.Ref)
         self.name, self.value, self.target = name, value, target
 
@@ -98,11 +101,26 @@ def _similar(name: str) -> list[str]:
     return sorted(found, key=lambda one: (not shares[one], -alike[one]))[:MAX_ALIKE]
 
 
+def _stated(site: Site, use: _Use) -> Iterator[Diagnostic]:
+    """Yield the invalid value of a clause, and its element if that does not have the configuration."""
+    if not isinstance(use.value, tree.Ref):
+        try:
+            setting_of(use.name.text).read(str(use.value.value))
+        except SettingError as error:
+            fixes = _within_bounds(site, use.value, setting_of(use.name.text))
+            yield finding(site, use.value, Severity.WARNING, CODE, str(error), fixes=fixes)
+    element = element_of(site, use.target)
+    is_element = element is not None and element.kind in ELEMENTS
+    if element is not None and is_element and not may_have(element.kind, _model(element), use.name.text):
+        message = not_configurable(element.name, _model(element), element.kind, use.name.text)
+        yield finding(site, use.target, Severity.WARNING, CODE, message)
+
+
 def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
     """Yield the invalid configuration values of a variation."""
     given: dict[str, tuple[Site, tree.Name]] = {}
     for site, use in _known_uses(scenario):
-        variable = site.target(use.value)
+        variable = site.target(use.value) if isinstance(use.value, tree.Ref) else None
         if variable is not None:
             given.setdefault(variable_key(variable), (site, use.name))
     for column in scenario.columns:

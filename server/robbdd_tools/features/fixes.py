@@ -87,7 +87,7 @@ def _declarations(
     if role in ("Event", "Task") and "." not in path and namespace is not None:
         edit = line_below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
         yield Fix(f"Declare the {role.lower()} '{path}'", (edit,))
-    if role in ("Variable", "AnySet"):
+    if role in ("Variable", "Term", "AnySet"):
         owner, _, name = path.rpartition(".")
         template = _template(snapshot, file, placed, owner)
         if template is not None and "." not in owner:

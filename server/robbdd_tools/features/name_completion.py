@@ -177,20 +177,26 @@ class Names:
             members = scene_wanted(self.snapshot, uri, self.cursor.before)
         for role in roles:
             known = set[str]()
+            own = slot_wanted(self.cursor.before) if role == "Term" else wanted
             for name, definition, rank in self._in_scope(role):
                 known.add(name)
-                if fits(self.snapshot, definition, wanted, members):
+                if fits(self.snapshot, definition, own, members):
                     yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
-            if role != "Namespace" and members is None:
+            if role not in ("Namespace", "Term") and members is None:
                 yield from islice(self._to_import(role, known, bracket, wanted), MAX_TO_IMPORT)
 
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)
         visible = scope.visible(ROLE_KINDS[role], self.cursor.scopes)
-        misfits = _misfits(self.cursor) if role == "Variable" else frozenset[str]()
-        for name in sorted(visible, key=lambda name: (name in misfits, name)):
+        misfits = _misfits(self.cursor) if role in ("Variable", "Term") else frozenset[str]()
+        ranks = dict.fromkeys(misfits, 1)
+        if role == "Term":
+            # A clause about an element holds for one scene only, so variables come first.
+            variables = ROLE_KINDS["Variable"]
+            ranks |= {name: 2 for name, (_, found) in visible.items() if found.symbol.kind not in variables}
+        for name in sorted(visible, key=lambda name: (ranks.get(name, 0), name)):
             definition = scope.define(*visible[name])
-            yield self._written(name, definition), definition, int(name in misfits)
+            yield self._written(name, definition), definition, ranks.get(name, 0)
 
     def _written(self, name: str, definition: Definition) -> str:
         """Return the shortest form of a name that starts with the qualifier that the user typed."""

@@ -115,8 +115,18 @@ def _joined(phrases: Sequence[tree.PhraseUse]) -> str:
 
 
 def _phrase_sentence(use: tree.PhraseUse) -> str:
-    values = {name: f"<{value.path}>" if isinstance(value, tree.Ref) else value.text for name, value in use.arguments}
+    values = {name: _written(value) for name, value in use.arguments}
     return re.sub(r'"?\{(\w+)[^}]*\}"?', lambda match: values.get(match[1], match[0]), word_of(use).sentence)
+
+
+def _written(value: tree.Argument) -> str:
+    match value:
+        case tree.Ref():
+            return f"<{value.path}>"
+        case tree.Number() | tree.Text():
+            return str(value.value)
+        case _:
+            return value.text
 
 
 def _text_sentence(predicate: tree.TextPredicate) -> str:

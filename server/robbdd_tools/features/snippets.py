@@ -205,7 +205,8 @@ class _Writer:
         if rule in _SAMPLES:
             yield self._placeholder(name, _SAMPLES[rule])
         elif rule.endswith("Path"):
-            yield self._placeholder(_in_words(rule.removesuffix("Path")))
+            role = rule.removesuffix("Path")
+            yield self._placeholder("variable" if role == "Term" else _in_words(role))
         elif rule in _CHOSEN:
             yield from self._rule(_CHOSEN[rule], depth, name)
         else:

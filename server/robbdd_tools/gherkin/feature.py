@@ -15,6 +15,7 @@ from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
 from robbdd_tools.gherkin.words import Placeholder
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
+from robbdd_tools.graph.read.clauses import named_elements
 from robbdd_tools.protocol.time_words import WORDING
 
 Numbered = tuple[int, Binding]
@@ -199,6 +200,7 @@ class _VariantWriter:
         self._variant = variant
         self._clauses = _in_order(variant)
         self._members = members(variant.scene)
+        self._named = named_elements(writer.model, variant)
         self._tables = () if background else scene_tables(writer, variant.scene)
         self._tags: dict[Iri, str] = {}
         variables = variant.variation.variables
@@ -209,15 +211,21 @@ class _VariantWriter:
             (text.tag("variant", variant.iri), text.tag("template", variant.template.iri)),
             tuple(variable_name(variable) for variable in variables),
             self._tables,
-            outline(writer, self._clauses, variant.variation, self._members) if outlined else None,
+            self._outline() if outlined else None,
             self._definitions({variable: Placeholder(variable_name(variable)) for variable in variables}),
         )
+
+    def _outline(self) -> Outline | None:
+        """Return the outline of the scenarios. A table of elements that clauses add to the scene has several rows."""
+        if not self._members.issuperset(self._named):
+            return None
+        return outline(self._writer, self._clauses, self._variant.variation, self._members)
 
     def scenario(self, number: int, values: Binding) -> ScenarioText:
         """Return one scenario, without its lines in a feature."""
         cells = tuple(values.values())
         steps = tuple(self._writer.steps(self._clauses, values))
-        extra = extra_elements(cells, self._writer.model.kinds, self._members)
+        extra = extra_elements((*cells, *self._named), self._writer.model.kinds, self._members)
         return ScenarioText(
             f"{self.header.name} -- {number}",
             self._variant,

@@ -110,7 +110,7 @@ def _renamings(scope: Scope, span: Span, names: Iterable[str]) -> tuple[Fix, ...
 
 
 def _wanted(role: str, article: bool = True) -> str:
-    words = {"Element": "object, workspace or agent", "AnySet": "set"}.get(role)
+    words = {"Element": "object, workspace or agent", "AnySet": "set", "Term": "variable"}.get(role)
     if words is None:
         words = str(ROLE_KINDS[role][0])
     return _a(words) if article else words

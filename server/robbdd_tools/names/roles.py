@@ -14,6 +14,7 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "Task": (SymbolKind.TASK,),
     "Template": (SymbolKind.TEMPLATE,),
     "Variable": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE),
+    "Term": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE, *_ELEMENTS),
     "Scene": (SymbolKind.SCENE,),
     "Composition": (SymbolKind.COMPOSITION,),
     "Object": (SymbolKind.OBJECT,),

@@ -24,7 +24,7 @@ from robbdd_tools.graph.acceptance_model import (
     Variant,
 )
 from robbdd_tools.graph.acceptance_model import DefinedEvent as ModelEvent
-from robbdd_tools.graph.read.clauses import names_in_events, used_names
+from robbdd_tools.graph.read.clauses import named_elements, names_in_events, used_names
 from robbdd_tools.monitor.policy import Observation, Policy
 from robbdd_tools.protocol.clauses import BehaviourCall, DefinedEvent, EventOccurrence, leaves_of
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
@@ -47,6 +47,7 @@ class _Shared:
     objects: tuple[Iri, ...]
     workspaces: Mapping[str, tuple[str, ...]]
     contains: Mapping[str, tuple[str, ...]]
+    named: tuple[Iri, ...]
     events: Mapping[str, str]
     instance: SceneInstance | None
 
@@ -195,6 +196,7 @@ class SpecWriter:
             (*scene.objects, *(thing for carriers in scene.carriers.values() for thing in carriers)),
             self._named(scene.carriers),
             self._named(scene.contains),
+            named_elements(self._model, variant),
             {self._curie(event): emits for event, emits in emitters_of(variant, self._relations.node(variant)).items()},
             None if variant.instance is None else self._instance(variant.instance),
         )
@@ -203,7 +205,7 @@ class SpecWriter:
         return {self._curie(key): tuple(map(self._curie, entries)) for key, entries in mapping.items()}
 
     def _scene(self, shared: _Shared, scene: SceneModel, values: Values) -> SceneSpec:
-        extra = elements_of(values.values())
+        extra = elements_of((*values.values(), *shared.named))
         places: dict[str, str] = {}
         config: list[ConfigSpec] = []
         for fluent, inner in _givens(self._model, shared.clauses, values):

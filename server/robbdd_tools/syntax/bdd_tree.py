@@ -53,12 +53,16 @@ class Variable(Node):
     is_set: bool
 
 
+Argument = Ref | Name | Quantity | Number | Text
+"""A reference, a bare name or a literal in a slot of a phrase."""
+
+
 @dataclass(frozen=True, slots=True)
 class PhraseUse(Node):
     """A catalog phrase with the values of its slots: ``word`` is the predicate's or behaviour's name."""
 
     word: str
-    arguments: tuple[tuple[str, Ref | Name | Quantity], ...]
+    arguments: tuple[tuple[str, Argument], ...]
 
 
 @dataclass(frozen=True, slots=True)

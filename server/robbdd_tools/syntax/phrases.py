@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from robbdd_tools.catalog.api import Behaviour, Predicate
+from robbdd_tools.catalog.api import Behaviour, Kind, Predicate
 from robbdd_tools.catalog.registry import Catalog
 
 PREDICATE_RULE = "Predicate_"
@@ -26,7 +26,11 @@ def phrase_rules(catalog: Catalog) -> str:
     conditions = dict(_phrases(PREDICATE_RULE, of_states))
     rules.append(f"Condition: {' | '.join(_longest_first(conditions))};")
     rules.append(f"Action: {' | '.join(_longest_first(actions))};")
-    rules += [f"{name}: {_body(phrase)};" for name, phrase in (predicates | actions).items()]
+    words = {**catalog.predicates, **catalog.behaviours}
+    for name, phrase in (predicates | actions).items():
+        slots = words[word_of_rule(name) or ""].slots
+        values = frozenset(slot.name for slot in slots if slot.kind is Kind.VALUE)
+        rules.append(f"{name}: {_body(phrase, values)};")
     return "\n".join(rules) + "\n"
 
 
@@ -52,11 +56,12 @@ def _longest_first(phrases: Mapping[str, str]) -> list[str]:
     return sorted(phrases, key=lambda name: (-len(phrases[name]), name))
 
 
-def _body(phrase: str) -> str:
+def _body(phrase: str, values: frozenset[str]) -> str:
+    """Return the rule of a phrase. Literals may fill the slots ``values``."""
     parts: list[str] = []
     for match in _PIECE.finditer(phrase):
         if match["slot"]:
-            parts.append(f"{match['slot']}=VariableRef")
+            parts.append(f"{match['slot']}={'Setting' if match['slot'] in values else 'TermRef'}")
         elif match["name"]:
             parts.append(f"{match['name']}=Name")
         elif match["quantity"]:

@@ -53,10 +53,10 @@ def _value(value: Any, text: str) -> Any:
     return convert(value, text)
 
 
-def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tree.Name | tree.Quantity], ...]:
+def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Argument], ...]:
     """Return the slots in written order."""
     fields_of_raw = cast(dict[str, Any], vars(raw))
-    slots: list[tuple[str, tree.Ref | tree.Name | tree.Quantity]] = [
+    slots: list[tuple[str, tree.Argument]] = [
         (name, convert(value, text)) for name, value in fields_of_raw.items() if name[0] != "_" and name != "parent"
     ]
     return tuple(sorted(slots, key=lambda slot: slot[1].span))

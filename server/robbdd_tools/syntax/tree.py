@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from robbdd_tools.syntax.bdd_tree import (
+    Argument,
     BehaviourTree,
     BehaviourUse,
     Body,
@@ -172,6 +173,7 @@ ChunkTree = DeclarationTree | Variant
 __all__ = [
     "Actuation",
     "After",
+    "Argument",
     "Assignment",
     "Axes",
     "Before",

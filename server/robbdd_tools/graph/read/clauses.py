@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
+    AcceptanceModel,
     BehaviourClause,
     Clause,
     Condition,
@@ -21,6 +22,7 @@ from robbdd_tools.graph.acceptance_model import (
     Junction,
     TextClause,
     TextFluent,
+    Variant,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
 from robbdd_tools.graph.rdf.vocabulary import (
@@ -39,6 +41,8 @@ if TYPE_CHECKING:
 
     from robbdd_tools.catalog.api import Slot
 
+_LITERALS = (Kind.QUANTITY, Kind.VALUE)
+"""Kinds of slots that a literal may fill instead of a variable."""
 ROLES = {"bdd:Given": "given", "bdd:When": "when", "bdd:Then": "then"}
 
 
@@ -151,7 +155,7 @@ class ClauseReader:
     def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
         return {
             slot.name: self.records.text(iri, slot.property)
-            if slot.kind is Kind.NAME or (slot.kind is Kind.QUANTITY and self._has_literal(iri, slot.property))
+            if slot.kind is Kind.NAME or (slot.kind in _LITERALS and self._has_literal(iri, slot.property))
             else self.records.one(iri, slot.property)
             for slot in slots
         }
@@ -203,6 +207,13 @@ def names_in_events(events: Iterable[DefinedEvent]) -> Iterator[Iri]:
         yield from [] if event.variable is None else [event.variable]
         arguments = (one for condition in event.conditions for one in condition.arguments.values())
         yield from (argument for argument in arguments if isinstance(argument, Iri))
+
+
+def named_elements(model: AcceptanceModel, variant: Variant) -> tuple[Iri, ...]:
+    """Return the elements that the clauses and events of a variant and its template name, in order."""
+    template = variant.template
+    names = (*used_names((*template.clauses, *variant.clauses)), *names_in_events(template.events))
+    return tuple(dict.fromkeys(name for name in names if name in model.kinds))
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:

@@ -122,6 +122,11 @@ def _add_slot_shape(shapes: Graph, word: Predicate | Behaviour, slot: Slot) -> N
         shapes.add((variable, SH.nodeKind, SH.IRI))
         _add_dimension(shapes, quantity, slot.dimension)
         shapes.add((shape, SH["or"], Collection(shapes, BNode(), [variable, quantity]).uri))
+    elif slot.kind is Kind.VALUE:
+        variable, value = BNode(), BNode()
+        shapes.add((variable, SH["class"], URIRef(expand(_CLASSES[slot.kind]))))
+        shapes.add((value, SH.nodeKind, SH.Literal))
+        shapes.add((shape, SH["or"], Collection(shapes, BNode(), [variable, value]).uri))
     else:
         shapes.add((shape, SH["class"], URIRef(expand(_CLASSES[slot.kind]))))
     shapes.add((shape, SH.severity, SH.Violation))

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from robbdd_tools.base.quantity_units import is_quantity
+from robbdd_tools.catalog.api import Behaviour, Kind, Predicate, Slot
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
@@ -134,7 +135,7 @@ class ClauseText:
 
     def _predicate(self, clause: Fluent | TextFluent) -> str:
         if isinstance(clause, Fluent):
-            return self._phrase(load_catalog().predicates[clause.predicate].phrase, clause.arguments)
+            return self._phrase(load_catalog().predicates[clause.predicate], clause.iri, clause.arguments)
         for name in clause.arguments:
             if not NAME.fullmatch(name):
                 raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is not a valid name")
@@ -154,15 +155,21 @@ class ClauseText:
     def _conditions(self, conditions: Sequence[Condition], kind: str, name: str) -> str:
         for number, one in enumerate(conditions):
             self._named(one.iri, kind, f".{name}{f'.{number}' if number else ''}")
-        phrases = load_catalog().predicates
-        return " and ".join(self._phrase(phrases[one.predicate].phrase, one.arguments) for one in conditions)
+        words = load_catalog().predicates
+        return " and ".join(self._phrase(words[one.predicate], one.iri, one.arguments) for one in conditions)
 
-    def _phrase(self, phrase: str, arguments: Mapping[str, Iri | str]) -> str:
-        return _SLOT.sub(lambda match: self._argument(arguments[match[1] or match[2]]), phrase)
+    def _phrase(self, word: Predicate | Behaviour, iri: Iri, arguments: Mapping[str, Iri | str]) -> str:
+        """Return the phrase of a clause, a condition or a behaviour; ``iri`` is its node."""
+        slots = {slot.name: slot for slot in word.slots}
+        return _SLOT.sub(
+            lambda match: self._argument(iri, slots[match[1] or match[2]], arguments[match[1] or match[2]]), word.phrase
+        )
 
-    def _argument(self, value: Iri | str) -> str:
+    def _argument(self, iri: Iri, slot: Slot, value: Iri | str) -> str:
         if isinstance(value, Iri):
             return self._variable(value)
+        if slot.kind is Kind.VALUE:
+            return self.names.value(self.names.records.all(iri, slot.property)[0])
         if not NAME.fullmatch(value) and not is_quantity(value):
             raise Incomplete(f"'{value}' is neither a name nor a quantity")
         return value
@@ -191,7 +198,7 @@ class ClauseText:
         node = names.records.one(clause.iri, "bhv:of-behaviour")
         namespace, local = names.split(node)
         name = local or "behaviour"
-        action = self._phrase(load_catalog().behaviours[clause.behaviour].phrase, clause.arguments)
+        action = self._phrase(load_catalog().behaviours[clause.behaviour], clause.iri, clause.arguments)
         duration = self.time(During(clause.start, clause.end))
         head = f"Behaviour (ns={names.prefix(namespace)}) {name}"
         link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"

@@ -260,10 +260,10 @@ class ClauseWriter:
         written = dict(phrase.arguments)
         for slot in slots:
             argument = written.get(slot.name)
-            if isinstance(argument, tree.Name | tree.Quantity):
-                is_name = isinstance(argument, tree.Name)
-                value = self._sink.literal(argument.text) if is_name else self._sink.quantity(argument.text)
-                self._sink.add(node, slot.property, value, self.frame.at(argument))
+            if isinstance(argument, tree.Name):
+                self._sink.add(node, slot.property, self._sink.literal(argument.text), self.frame.at(argument))
+            elif isinstance(argument, tree.Quantity | tree.Number | tree.Text):
+                self._sink.add(node, slot.property, self._sink.value(argument), self.frame.at(argument))
             elif argument is not None:
                 self._sink.add(node, slot.property, self.frame.target(argument), self.frame.at(argument))
 
