@@ -331,6 +331,13 @@ BROKEN: dict[str, list[str]] = {
     "emission": [
         MODEL.replace("places at <goal>\n", "places at <goal>\n            emits pick-ends as <pick-start>\n"),
     ],
+    "simultaneous-agent": [
+        MODEL.replace(
+            "places at <goal>\n        }\n",
+            "places at <goal>\n        }\n        meanwhile Behaviour (ns=t) more {\n"
+            "            duration: from <pick-start> until <place-end> <robot> picks <part>\n        }\n",
+        ),
+    ],
     "number-range": [
         "//- main.bddx\nns x = 'https://example.org/x/'\n"
         "obs provider (ns=x) p { simulation ground truth update-rate: 9 Hz\n    noise: -2 mm }\n",

@@ -51,6 +51,7 @@ from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
 from robbdd_tools.checks.setting import setting
 from robbdd_tools.checks.several_places import several_places
+from robbdd_tools.checks.simultaneous_agent import simultaneous_agent
 from robbdd_tools.checks.single_element import single_element
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
@@ -88,6 +89,7 @@ DECLARATION_RULES = (
     row_width,
     selection_size,
     setting,
+    simultaneous_agent,
     single_element,
     type_conflict,
 )

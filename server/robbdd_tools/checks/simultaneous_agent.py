@@ -1,0 +1,59 @@
+"""``simultaneous-agent``: one agent has two behaviours at the same time (``meanwhile``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Edit, Fix, Severity
+from robbdd_tools.base.document import Span
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+CODE = "simultaneous-agent"
+_MEANWHILE = "meanwhile"
+
+
+def simultaneous_agent(site: Site) -> Iterator[Diagnostic]:
+    """Report each behaviour of a template whose agent executes another one at the same time."""
+    template = site.tree
+    if not isinstance(template, tree.Template):
+        return
+    for when in walk(template.body):
+        if isinstance(when, tree.When) and when.more:
+            yield from _in_when(site, when)
+
+
+def _in_when(site: Site, when: tree.When) -> Iterator[Diagnostic]:
+    busy: dict[tuple[str, str], tree.Ref] = {}
+    for step in when.steps:
+        if not isinstance(step, tree.Further) or step.link != _MEANWHILE:
+            busy = {}
+        agent = _agent(step.behaviour)
+        target = None if agent is None else site.target(agent)
+        if agent is None or target is None:
+            continue
+        first = busy.setdefault((target.uri, target.symbol.path), agent)
+        if first is not agent and isinstance(step, tree.Further):
+            start = site.span(step).start
+            fix = Fix("Execute it afterwards: 'then'", (Edit(site.uri, Span(start, start + len(_MEANWHILE)), "then"),))
+            message = (
+                f"'{agent.path}' cannot execute two behaviours at the same time: name another agent, or write 'then'"
+            )
+            related = (related_to(site, first, "its other behaviour"),)
+            yield finding(site, agent, Severity.ERROR, CODE, message, related, (fix,))
+
+
+def _agent(use: tree.BehaviourUse) -> tree.Ref | None:
+    """Return the agent of a behaviour."""
+    written = dict(use.action.arguments)
+    slots = load_catalog().behaviours[use.action.word].slots
+    agents = (written.get(slot.name) for slot in slots if slot.kind is Kind.AGENT)
+    return next((agent for agent in agents if isinstance(agent, tree.Ref)), None)
