@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
-import numpy as np
-
 from robbdd_tools.catalog.api import Predicate
 
 if TYPE_CHECKING:
@@ -30,6 +28,9 @@ class JointEvaluator:
         The margins have different units, so only the sign has a meaning. It is NaN where a margin is not a number and
         no other one is negative.
         """
+        # Editors read conditions, too, and do not load numpy.
+        import numpy as np
+
         margins = np.stack([one.evaluate(evidence, own) for one, own in self.parts(arguments) if one.evaluate])
         unknown = np.isnan(margins)
         least: FloatArray = np.where(unknown, np.inf, margins).min(axis=0)
