@@ -1,5 +1,6 @@
 // The graph of a model next to its text: it follows edits and the cursor, links to the text, and is restored.
 import assert from "node:assert/strict";
+import { accessible } from "../harness/axe.mjs";
 import { contrast } from "../harness/contrast.mjs";
 import { eventually } from "../harness/patience.mjs";
 import { story } from "../harness/story.mjs";
@@ -97,6 +98,7 @@ export function graph(window) {
       ]);
       assert.ok(contrast(text, ground) >= 4.5, `${scheme}: ${text} on ${ground}`);
       await workbench.screenshot(`graph-${scheme}`);
+      await accessible(page, `graph (${scheme})`);
     }
   });
 
