@@ -36,7 +36,10 @@ PEER = {
 }
 """Recorded figures of the server of secoro-dsl-nvim, on a machine of the same kind (2 cores at 2.5 GHz), not in this
 run: what it needs comes from no package registry. Files of the same length are not the same files."""
-ON_EVERY_STROKE = ("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange")
+ON_EVERY_STROKE = (
+    *("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange"),
+    "documentHighlight",
+)
 """Requests of VS Code after each change of a text. It requests hints of the visible lines only."""
 VISIBLE = 60
 """Lines that an editor shows."""
@@ -105,7 +108,7 @@ class Session:
         self.client.notify("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
         shown = {"line": max(0, place["line"] - VISIBLE // 2), "character": 0}
         visible = {"start": shown, "end": {"line": shown["line"] + VISIBLE, "character": 0}}
-        more = {"previousResultId": self._coloured, "range": visible}
+        more = {"previousResultId": self._coloured, "range": visible, "position": place}
         methods = ON_EVERY_STROKE if asking else ()
         asked = [self.client.ask(f"textDocument/{method}", {**self.document, **more}) for method in methods]
         answers = [self.client.answer(number) for number in asked]
@@ -234,10 +237,16 @@ def _one_file(text: str, name: str, typed: str, place: Callable[[str], int]) -> 
             yield f"{method}, {name}", str(session.measured([work] * QUESTIONS))
         start = place(session.text)
         strokes = [partial(session.typed, letter, start + number) for number, letter in enumerate(typed)]
-        yield with_peer(f"keystroke to diagnostics, {name}", str(session.measured(strokes)))
+        yield with_peer(f"keystroke to diagnostics, {name}", _beside(session.measured(strokes), spent))
         session.colour()
         strokes = [partial(session.typed, letter, start + number, True) for number, letter in enumerate(typed)]
-        yield f"keystroke to all that VS Code asks for, {name}", str(session.measured(strokes))
+        yield f"keystroke to all that VS Code asks for, {name}", _beside(session.measured(strokes), spent)
+
+
+def _beside(times: Times, opening: float) -> str:
+    """Return times beside the processor time (ms) of opening the same file in the same run: machines differ."""
+    ratio = f"; opening computes {opening / 1000 / statistics.median(times.spent):.0f} × as long" if times.spent else ""
+    return f"{times}{ratio}"
 
 
 def _judged(message: Message) -> tuple[int, int] | None:
