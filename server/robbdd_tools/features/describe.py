@@ -44,6 +44,7 @@ from robbdd_tools.syntax.symbols import walk
 if TYPE_CHECKING:
     from robbdd_tools.features.clause_results import PassRate, ResultHint
     from robbdd_tools.features.run_verdicts import Findings, JudgedScenario
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element
     from robbdd_tools.names.project import Snapshot
@@ -135,14 +136,16 @@ def describe_words(words: str) -> str | None:
 
 def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
     """Yield the variants of a template, both in its own file and in the files that import it."""
-    return (_scenario(site, variant) for site, variant in _variants_of(snapshot, template))
+    return (_scenario(snapshot, *place) for place in _variants_of(snapshot, template))
 
 
-def _scenario(site: Site, variant: tree.Variant) -> Scenario:
-    return next(scenario for scenario in scenarios(site) if scenario.variant is variant)
+def _scenario(snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, variant: tree.Variant) -> Scenario:
+    return next(scenario for scenario in scenarios(Site(snapshot, file, placed)) if scenario.variant is variant)
 
 
-def _variants_of(snapshot: Snapshot, template: Definition) -> Iterator[tuple[Site, tree.Variant]]:
+def _variants_of(
+    snapshot: Snapshot, template: Definition
+) -> Iterator[tuple[FileAnalysis, PlacedDeclaration, tree.Variant]]:
     """Yield the variants of a template that have no syntax error, with their places."""
     name = name_of(template)
     for uri in (template.uri, *snapshot.importers(template.uri)):
@@ -150,12 +153,12 @@ def _variants_of(snapshot: Snapshot, template: Definition) -> Iterator[tuple[Sit
         if file is None:
             continue
         for placed, spans in uses_by_part(snapshot, file, name):
-            ends = [span.end for span in spans]
+            ends, broken = [span.end for span in spans], bool(placed.declaration.faults)
             for node in (clauses.node for clauses in clauses_of(placed.declaration)):
-                if isinstance(node, tree.Variant) and node.template.span.end in ends:
-                    site = Site(snapshot, file, placed)
-                    if site.whole(node):
-                        yield site, node
+                if not isinstance(node, tree.Variant) or node.template.span.end not in ends:
+                    continue
+                if not broken or Site(snapshot, file, placed).whole(node):
+                    yield file, placed, node
 
 
 def _title(snapshot: Snapshot, definition: Definition) -> str:
@@ -197,7 +200,7 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             yield from _tree_node(site, definition)
         case SymbolKind.TEMPLATE:
             variants = list(_variants_of(site.snapshot, definition))
-            for scenario in (_scenario(*place) for place in variants[:MAX_LISTED]):
+            for scenario in (_scenario(site.snapshot, *place) for place in variants[:MAX_LISTED]):
                 yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
             if len(variants) > MAX_LISTED:
                 yield f"… and {len(variants) - MAX_LISTED:,} more"
