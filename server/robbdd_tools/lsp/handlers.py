@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
+from typing import Any, cast
 
 from lsprotocol import types
 
@@ -104,7 +104,9 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     async def did_change(ls: RobbddServer, params: types.DidChangeTextDocumentParams) -> None:
         document = params.text_document
-        text = ls.workspace.get_text_document(document.uri).source
+        # pygls declares the base class of the protocol only.
+        protocol: Any = ls.protocol
+        text = protocol.texts.text(document.uri)
         if is_source(document.uri):
             await ls.sources.edited(document.uri, text)
         else:

@@ -17,9 +17,12 @@ from pygls.protocol.json_rpc import JsonRPCNotification
 from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.base.uris import canonical_uri
 from robbdd_tools.lsp.json_text import JsonText
+from robbdd_tools.lsp.open_texts import OpenTexts
 from robbdd_tools.lsp.transport import end_soon
 
 _LOG = logging.getLogger(__name__)
+_Steps = Generator[Any, Any, None]
+"""The handlers that pygls calls for a message, with their arguments."""
 _DOCUMENTS = frozenset((types.TEXT_DOCUMENT_DID_OPEN, types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE))
 """Notifications about a document that the client names; its URI stands for the file while it is open."""
 
@@ -28,6 +31,7 @@ class Protocol(LanguageServerProtocol):
     """Sends messages in the order in which they are submitted."""
 
     def __init__(self, *arguments: Any) -> None:
+        self.texts = OpenTexts()
         super().__init__(*arguments)
         self._outbox = ThreadPoolExecutor(1, thread_name_prefix="outbox")
 
@@ -40,6 +44,31 @@ class Protocol(LanguageServerProtocol):
         end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
         yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType] -- no types in pygls
+
+    @lsp_method(types.TEXT_DOCUMENT_DID_OPEN)
+    def lsp_text_document__did_open(self, params: types.DidOpenTextDocumentParams) -> _Steps:
+        """Take the text of a document."""
+        self.texts.open(params.text_document.uri, params.text_document.text)
+        yield self._handler(types.TEXT_DOCUMENT_DID_OPEN), (params,), None
+
+    @lsp_method(types.TEXT_DOCUMENT_DID_CHANGE)
+    def lsp_text_document__did_change(self, params: types.DidChangeTextDocumentParams) -> _Steps:
+        """Change the text of a document at once, so that later messages see it."""
+        # pygls declares the base class of the server only.
+        server: Any = self._server
+        self.texts.change(server.convert, params.text_document.uri, params.content_changes)
+        yield self._handler(types.TEXT_DOCUMENT_DID_CHANGE), (params,), None
+
+    @lsp_method(types.TEXT_DOCUMENT_DID_CLOSE)
+    def lsp_text_document__did_close(self, params: types.DidCloseTextDocumentParams) -> _Steps:
+        """Drop the text of a document."""
+        self.texts.close(params.text_document.uri)
+        yield self._handler(types.TEXT_DOCUMENT_DID_CLOSE), (params,), None
+
+    def _handler(self, method: str) -> Any:
+        # pygls leaves the type of the features open.
+        manager: Any = self.fm
+        return manager.features[method]
 
     @property
     def exit_code(self) -> int:
