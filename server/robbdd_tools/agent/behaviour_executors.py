@@ -10,7 +10,10 @@ import numpy as np
 from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
 from robbdd_tools.world.errors import BehaviourError, SceneError
+from robbdd_tools.world.hand_over import HandOver
+from robbdd_tools.world.open_close import OpenClose, opening_by_handle
 from robbdd_tools.world.pick_place import PickPlace
+from robbdd_tools.world.push_object import PushObject
 from robbdd_tools.world.timed_pick_place import TimedPickPlace
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
@@ -84,11 +87,15 @@ class BehaviourExecutors:
         if not self.is_users and agent in self._controllers and not self._simulation.grips(agent):
             yield from self._controllers[agent].park()
 
-    def refuse_nowhere(self, call: Call) -> None:
-        """Raise ``SceneError`` if no object carries a place of a behaviour.
+    def refuse_impossible(self, call: Call) -> None:
+        """Raise ``SceneError`` if no object carries a place of a behaviour, or a thing to open has no handle.
 
-        In this case, the model is wrong, not the robot.
+        In these cases, the model is wrong, not the robot.
         """
+        if call.behaviour in ("open", "close") and not self.is_users:
+            opening_by_handle(self._simulation.world.cast, call.element("object"))
+        if call.behaviour == "hand-over" and len(set(call.agents)) < len(call.agents):
+            raise SceneError(f"'{call.element('agent')}' cannot hand over to itself")
         places = call.places if "workspace" in call.arguments else ()
         if places and not self.is_users and not any(place in self._regions for place in places):
             one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"
@@ -113,6 +120,15 @@ class BehaviourExecutors:
                 )
             case "pick-place":
                 return controller.pick_place(call.element("object"), self._in_any_order(call))
+            case "open":
+                return OpenClose(controller, self._emit).open(call.element("object"))
+            case "close":
+                return OpenClose(controller, self._emit).close(call.element("object"))
+            case "push":
+                return PushObject(controller, self._emit).push(call.element("object"), call.places)
+            case "hand-over":
+                receiver = self.controller(call.element("receiver"))
+                return HandOver(controller, receiver, self._emit).hand_over(call.element("object"))
             case other:
                 raise BehaviourError(f"no agent of this installation can execute the behaviour '{other}'")
 

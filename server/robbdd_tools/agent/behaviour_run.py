@@ -263,7 +263,7 @@ class BehaviourRun:
         for call in self._calls:
             for agent in call.agents:
                 self._executors.controller(agent)
-            self._executors.refuse_nowhere(call)
+            self._executors.refuse_impossible(call)
         refuse_overlaps(self.simulation)
         try:
             self.simulation.settle()

@@ -33,6 +33,7 @@ class PassiveJoint:
     - ``bounds``: the range of the joint; ``None`` if it is not limited.
     - ``start``: the joint position at the beginning.
     - ``friction``, ``damping``, ``stiffness``, ``rest`` (of the spring), ``armature``: as in the file.
+    - ``handle``: the number of the part's shape that a gripper holds; ``None`` if it has no handle.
     """
 
     parent: str
@@ -49,6 +50,7 @@ class PassiveJoint:
     stiffness: float = 0.0
     rest: float = 0.0
     armature: float = 0.0
+    handle: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

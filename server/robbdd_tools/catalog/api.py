@@ -259,12 +259,10 @@ class Shape:
 class ObjectModel:
     """A kind of object in the simulated world: for objects whose name, or that of their set, has one of ``prefixes``.
 
-    - ``mass``: in kg.
-    - ``friction``: the coefficient of sliding friction.
+    - ``mass``: in kg; ``friction``: the coefficient of sliding friction.
     - ``free``: true if the object can move, for example a bin that can be pushed. Other objects are fixed.
     - ``graspable``: true if the object fits into a gripper. It is placed at random unless the scene places it.
-    - ``rest_height``: the height (m) of its origin above the surface below it.
-    - ``region``: the workspace that it carries, if any.
+    - ``rest_height``: the height (m) of its origin above the surface below; ``region``: the workspace that it carries.
     - ``color``: RGBA in [0, 1].
     """
 
@@ -284,9 +282,11 @@ class ObjectModel:
     parts: tuple[Region, ...] = ()
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
     frame: Vector = (0.0, 0.0, 0.0)
-    """Position (m) of the frame that poses in a scene refer to: the body frame of its file, which is arbitrary."""
+    """Position (m) of the frame that poses in a scene refer to: the body frame of its file."""
     joint: PassiveJoint | None = None
     """The joint of a moving part of another object, such as a drawer; such a part is not ``free``."""
+    moving: ObjectModel | None = None
+    """The moving part that this object carries, with its joint."""
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries.

@@ -46,7 +46,7 @@ def object_has(model: ObjectModel, name: str) -> bool:
         case "height_scale":
             return is_scalable(model)
         case "opening":
-            return model.joint is not None
+            return model.joint is not None or model.moving is not None
         case _:
             return setting_of(name).judges == "object"
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.api import ShapeKind
+
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, Vector
 
@@ -39,7 +41,13 @@ def at_places(models: Mapping[str, ObjectModel], names: Iterable[str], where: st
 
 
 def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:
-    if model.region is None or other.region is None:
-        return place == other_place
-    reach = (one + two for one, two in zip(model.region.half[:2], other.region.half[:2], strict=True))
+    reach = (one + two for one, two in zip(_half(model), _half(other), strict=True))
     return all(abs(a - b) < r for a, b, r in zip(place, other_place, reach, strict=False))
+
+
+def _half(model: ObjectModel) -> tuple[float, float]:
+    """Return half the edges (m) of the area that an object needs: that of its workspace, else that of its shapes."""
+    if model.region is not None:
+        return model.region.half[:2]
+    ends = [(shape.position, shape.size[0], shape.size[shape.kind is ShapeKind.BOX]) for shape in model.shapes]
+    return max(abs(at[0]) + x for at, x, _ in ends), max(abs(at[1]) + y for at, _, y in ends)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.owners import geom_owners
+from robbdd_tools.world.owners import geom_owners, shape_name
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -27,8 +27,8 @@ class Hit:
 class Clearance:
     """Collision checks of one robot with the world in ``state`` at construction; nothing is stepped."""
 
-    def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
-        """Ignore contacts with the object ``spare``, if any: it is the one to be gripped."""
+    def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any, shape: int | None = None) -> None:
+        """Ignore contacts with the object ``spare``, if any, or with one of its shapes: it is to be gripped."""
         self._model: Any = simulation.model
         self._data: Any = simulation.scratch
         self._state: FloatArray = state.qpos.copy()
@@ -38,6 +38,8 @@ class Clearance:
         root = trees[self._model.geom_bodyid[robot.pads[0]]]
         self._own = trees[self._model.geom_bodyid] == root
         self._ignored = self._model.geom_bodyid == (self._model.body(spare).id if spare else -1)
+        if shape is not None:
+            self._ignored &= np.arange(len(self._ignored)) == self._model.geom(shape_name(spare, shape)).id
 
     def depth(self, joints: FloatArray) -> float:
         """Return the penetration (m) of the arm with open fingers into anything else; 0 without a collision."""

@@ -18,14 +18,14 @@ from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, rank_by_friction
-from robbdd_tools.world.owners import scenery_name
+from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, pair_stiff, rank_by_friction
+from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
-from robbdd_tools.world.staging import Staging, shape_name
+from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
@@ -137,9 +137,15 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         shape_name(name, i) for name, model in cast.objects.items() if can_move(model) for i in range(len(model.shapes))
     ]
     pair_pads(spec, pads, loose)
+    jaws = {name for name, model in cast.objects.items() if model.joint is not None}
+    jaws |= {model.joint.parent for model in cast.objects.values() if model.joint is not None and model.joint.parent}
+    shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
+    parts = [name for name, model in cast.objects.items() if model.graspable and name not in jaws]
+    pair_stiff(
+        spec, [geom for name in sorted(jaws) for geom in shapes[name]], [g for name in parts for g in shapes[name]]
+    )
     if cast.staging is not None:
         pair_declared(spec, cast.staging.pairs_of_elements())
-        shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
         faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
         pair_given(spec, cast.staging.frictions, shapes | faces)
     rank_by_friction(spec, pads)

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from robbdd_tools.world.staging import DeclaredPair
 
 
+STIFF = (0.005, 1.0), (0.95, 0.99, 0.001, 0.5, 2.0)
+"""Parameters of stiff contacts (``solref``, ``solimp``), which the pads of the catalog's grippers have, too."""
+
+
 def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
     """Make the smoother geom of each contact decisive, by priorities that replace those of the files.
 
@@ -59,6 +63,17 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
         pair.friction = [sliding, sliding, sliding * patch, rolling, rolling]
         pair.solref, pair.solimp = pad.solref, pad.solimp
         pair.gap = pad.gap
+
+
+def pair_stiff(spec: Any, jaws: Iterable[str], parts: Iterable[str]) -> None:
+    """Declare the contacts of things with moving parts with loose parts, as stiff as those of gripping faces.
+
+    The engine's own stiffness grows with the mass: between a drawer and its chest, a light part that is too large would
+    yield by millimetres under the force of a gripper.
+    """
+    for jaw, part in product(jaws, parts):
+        pair = _pair_of(spec, jaw, part)
+        pair.solref, pair.solimp = STIFF
 
 
 def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> None:

@@ -73,6 +73,10 @@ class Gripper(ABC):
     def release(self, hand: Hand) -> Step:
         """Release everything."""
 
+    @abstractmethod
+    def close(self, hand: Hand) -> Step:
+        """Close without an object, so that the gripper can push."""
+
 
 class Fingers(Gripper):
     """Two fingers that close on an object and hold it by friction."""
@@ -103,6 +107,13 @@ class Fingers(Gripper):
             hand.control = _towards(self._robot.gripper_open, hand.control, step)
             yield from hand.wait(1)
 
+    def close(self, hand: Hand) -> Step:
+        """Close the fingers at their speed."""
+        while hand.control != self._robot.gripper_closed:
+            step = CLOSING * TICK * self._motion.rate
+            hand.control = _towards(self._robot.gripper_closed, hand.control, step)
+            yield from hand.wait(1)
+
 
 class Cup(Gripper):
     """A suction cup: it must touch the object before it can hold it."""
@@ -127,6 +138,10 @@ class Cup(Gripper):
         """Switch the vacuum off."""
         hand.control = self._robot.gripper_open
         yield from hand.wait(1)
+
+    def close(self, hand: Hand) -> Step:
+        """Push without vacuum."""
+        yield from self.release(hand)
 
 
 def _towards(goal: float, present: float, step: float) -> float:

@@ -17,7 +17,15 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
-from robbdd_tools.world.moving_parts import is_free, joint_bodies, joint_name, joint_of, name_of_body, rigid_root
+from robbdd_tools.world.moving_parts import (
+    handle_of,
+    is_free,
+    joint_bodies,
+    joint_name,
+    joint_of,
+    name_of_body,
+    rigid_root,
+)
 from robbdd_tools.world.urdf_files import is_urdf, read_urdf, speeds
 
 if TYPE_CHECKING:
@@ -172,7 +180,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         doc=f"from {source.name}",
         region=own,
         parts=tuple(region for region in sites.get(body, ()) if region.name),
-        joint=joint_of(model, data, body, 0, source) if jointed else None,
+        joint=replace(joint_of(model, data, body, 0, source), handle=main.handle) if jointed else None,
     )
     name, joint = name_of_body(model, body), joint_name(model, body) if jointed else ""
     return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts)
@@ -193,6 +201,12 @@ class _Rigid:
             raise SceneError(f"the body '{model.body(body).name}' has no collision shape", origin=source.origin)
         self.shapes = tuple(_shape(model, data, geom, body) for geom in self.geoms)
         self.names = tuple(str(model.geom(geom).name) for geom in self.geoms)
+        bodies = [str(model.body(int(model.geom_bodyid[geom])).name) for geom in self.geoms]
+        # The name of the moving body itself is not that of one of its shapes.
+        bodies = [
+            name if number != body else "" for name, number in zip(bodies, model.geom_bodyid[self.geoms], strict=True)
+        ]
+        self.handle = handle_of(f"{one} {other}" for one, other in zip(self.names, bodies, strict=True))
         self.mass = float(sum(model.body_mass[index] for index in own))
 
 
@@ -216,7 +230,7 @@ def _part(
         doc=f"a moving part from {source.name}",
         region=next((region for region in regions if not region.name), None),
         parts=tuple(region for region in regions if region.name),
-        joint=joint_of(model, data, body, parent, source),
+        joint=replace(joint_of(model, data, body, parent, source), handle=rigid.handle),
     )
     return MovingPart(name_of_body(model, body), joint_name(model, body), made, rigid.names)
 

@@ -6,8 +6,8 @@ redundant arm turns with its first joint.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
@@ -69,6 +69,20 @@ def tool_pose(base: Pose, position: FloatArray, closing: float) -> ToolPose:
     turn = closing - base.yaw - direction - pi / 2
     turn -= pi * round(turn / pi)
     return ToolPose(hypot(x, y), direction, float(position[2]) - base.position[2], turn)
+
+
+def tool_path(base: Pose, points: Iterable[tuple[FloatArray, float]], turn: float | None = None) -> list[ToolPose]:
+    """Return the tool poses at world positions, each with the closing direction (rad) of the fingers there.
+
+    The fingers do not change places between points, nor before the first one if the ``turn`` (rad) there is given.
+    """
+    found: list[ToolPose] = []
+    for position, closing in points:
+        pose = tool_pose(base, position, closing)
+        last = pose.turn if turn is None else turn
+        turn = pose.turn + pi * round((last - pose.turn) / pi)
+        found.append(replace(pose, turn=turn))
+    return found
 
 
 def present_pose(arm: Arm, joints: FloatArray) -> ToolPose:

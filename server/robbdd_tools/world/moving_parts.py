@@ -9,7 +9,7 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
@@ -18,6 +18,10 @@ _KINDS: dict[int, Literal["slide", "hinge"]] = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
     int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
 }
+
+
+HANDLES = ("handle", "knob", "grip")
+"""Words in the name of a shape, or of its body, that a gripper holds to open the thing."""
 
 
 def is_free(model: Any, body: int) -> bool:
@@ -78,6 +82,11 @@ def joint_of(model: Any, data: Any, body: int, parent: int, source: ModelSource)
         rest=float(model.qpos_spring[int(model.jnt_qposadr[number])]),
         armature=float(model.dof_armature[dof]),
     )
+
+
+def handle_of(names: Iterable[str]) -> int | None:
+    """Return the number of the first shape whose name says that it is a handle, by the names of shapes and bodies."""
+    return next((i for i, name in enumerate(names) if any(word in name.lower() for word in HANDLES)), None)
 
 
 def name_of_body(model: Any, body: int) -> str:

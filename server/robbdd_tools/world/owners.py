@@ -15,6 +15,11 @@ def scenery_name(number: int) -> str:
     return f"{SCENERY}{number}"
 
 
+def shape_name(owner: str, shape: str | int) -> str:
+    """Return the name of a geom in the world: of an element by the number of its shape, of scenery by its name."""
+    return f"{owner}/shape{shape}" if isinstance(shape, int) else f"{owner}/{shape}"
+
+
 def is_scenery(name: str) -> bool:
     """Return whether a name is that of a model of the whole scene; elements have a namespace."""
     return name.startswith(SCENERY) and name[len(SCENERY) :].isdecimal()

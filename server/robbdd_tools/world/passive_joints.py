@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from robbdd_tools.world.owners import joint_of_part
 from robbdd_tools.world.pose import Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from robbdd_tools.catalog.api import FloatArray, ObjectModel
 
@@ -75,6 +76,16 @@ def initial_pose(model: ObjectModel, carrier: ObjectModel, carried_at: Pose) -> 
     w, x, y, z = (float(part) for part in whole)
     yaw = float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
     return Pose(carried_at.at(here.position).position, yaw, (w, x, y, z))
+
+
+def ways_of_parts(objects: Mapping[str, ObjectModel], poses: Mapping[str, Pose]) -> Iterator[tuple[Pose, ObjectModel]]:
+    """Yield the moving parts of the catalog's models where they are when closed and when open."""
+    for model in objects.values():
+        joint = model.joint
+        if joint is not None and joint.bounds is not None and joint.parent and objects[joint.parent].moving:
+            for end in joint.bounds:
+                there = replace(model, joint=replace(joint, start=end))
+                yield initial_pose(there, objects[joint.parent], poses[joint.parent]), model
 
 
 def opening_records(

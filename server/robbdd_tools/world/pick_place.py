@@ -17,7 +17,7 @@ from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.motion import ToolPose, tool_pose
-from robbdd_tools.world.put_down import Target, has_room, targets
+from robbdd_tools.world.put_down import Target, has_room, on_tables, targets
 from robbdd_tools.world.reaching import Approach, Obstruction, approaches, joints_at
 from robbdd_tools.world.travel_clearance import height_over
 
@@ -66,12 +66,16 @@ class PickPlace(ArmControl):
         """
         yield from self._until_at_rest(name)
         self._emit("pick-start")
+        yield from self.grasp(name)
+        self._emit("pick-end")
+
+    def grasp(self, name: str) -> Step:
+        """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``."""
         since = self.simulation.forces.row
         best = yield from self._approach(name)
         yield from self._take(best, name, since)
         self.held, self._grasp = name, best.grasp
         yield from self.move(self.at_travel(best.at))
-        self._emit("pick-end")
 
     def place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Carry the held object to a workspace and release it; raises ``BehaviourError``.
@@ -82,7 +86,24 @@ class PickPlace(ArmControl):
             raise BehaviourError(f"{self.robot.name} does not hold {name}")
         self._emit("place-start")
         down = self._choose_place(name, workspaces, self._grasp)
-        over, here = self._carried_to(down, name, self._grasp), self.tool
+        yield from self._put(down, name, self._grasp)
+        self._emit("place-end")
+
+    def lay_down(self, name: str, suits: Callable[[Target, Grasp], bool]) -> Step:
+        """Put the held object down on a table at a place that suits; raises ``BehaviourError``."""
+        if self.held != name or self._grasp is None:
+            raise BehaviourError(f"{self.robot.name} does not hold {name}")
+        clearance, missed = Clearance(self.simulation, self.robot, name, self.simulation.data), Obstruction()
+        for target in on_tables(self.simulation, self.robot, name):
+            if suits(target, self._grasp):
+                pose = self._lower_onto(target, name, self._grasp, clearance, missed)
+                if pose is not None:
+                    yield from self._put(pose, name, self._grasp)
+                    return
+        raise BehaviourError(f"{self.robot.name} finds no place on a table that both arms reach{missed}")
+
+    def _put(self, down: ToolPose, name: str, grasp: Grasp) -> Step:
+        over, here = self._carried_to(down, name, grasp), self.tool
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
         yield from self.move(over)
@@ -91,7 +112,6 @@ class PickPlace(ArmControl):
         yield from self.gripper.release(self)
         yield from self.wait(round(self.robot.model.release_time / TICK))
         yield from self.move(self.at_travel(down))
-        self._emit("place-end")
 
     def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""

@@ -14,7 +14,7 @@ from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.passive_joints import initial_pose
+from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
 
@@ -142,13 +142,14 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
             poses[name] = initial_pose(model, cast.objects[model.joint.parent], poses[model.joint.parent])
         elif model.joint is not None and name not in poses:
             raise SceneError(f"'{name}' hangs on a joint: give it a pose in the .scenex", origin=cast.origin(name))
+    ways = list(ways_of_parts(cast.objects, poses))
     taken: list[_Disc] = []
     dropped: list[Ball] = []
     resampled = 0
     for name, model in cast.objects.items():
         if not model.graspable:
             continue
-        walls = [(poses[other], cast.objects[other]) for other in bins]
+        walls = [(poses[other], cast.objects[other]) for other in bins] + ways
         if name in placed:
             pose, rejected = _apart_from(cast, name, placed[name], taken)
         elif name in cast.drops:

@@ -52,6 +52,14 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
             yield from _on_table(simulation, robot, name, carrier, region)
 
 
+def on_tables(simulation: Simulation, robot: Robot, name: str) -> Iterator[Target]:
+    """Yield places for an object on the tables in front of an arm, those with most room first."""
+    for table in simulation.world.cast.tables:
+        region = simulation.world.cast.objects[table].region
+        if region is not None:
+            yield from _on_table(simulation, robot, name, table, region)
+
+
 def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
     """Return whether some place at a workspace is far enough from all loose objects for another one."""
     radius = footprint(simulation.world.cast.objects[name])

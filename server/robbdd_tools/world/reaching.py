@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import nan, pi
@@ -89,14 +89,22 @@ def approaches(
     objects = simulation.world.cast.objects
     if name not in objects:
         raise BehaviourError(f"there is no {name} in the scene")
-    arm = arm_of(robot.model)
     position, rotation = simulation.seen(name)
     if data is not None:
         # A recorded state is the truth, whatever the robot perceives.
         position, rotation = data.body(name).xpos.copy(), data.body(name).xmat.reshape(3, 3).copy()
     data = simulation.data if data is None else data
     clearance = Clearance(simulation, robot, name, data)
-    for grasp in gripper_of(robot.model).grasps(name, objects[name], position, rotation):
+    grasps = gripper_of(robot.model).grasps(name, objects[name], position, rotation)
+    yield from approaches_by(robot, grasps, clearance, missed)
+
+
+def approaches_by(
+    robot: Robot, grasps: Iterable[Grasp], clearance: Clearance, missed: Obstruction | None = None
+) -> Iterator[Approach]:
+    """Yield those of some grasps that are within the joint limits; how far others are out of reach is noted."""
+    arm = arm_of(robot.model)
+    for grasp in grasps:
         at = tool_pose(robot.base, grasp.position, grasp.closing)
         above = at_travel(robot, at)
         try:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
+from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.scene_configuration import Configured, configure, height_of
 
 if TYPE_CHECKING:
@@ -129,6 +130,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         moving = dict(staging.moving_parts())
         objects = {name: model for name, model in objects.items() if name not in moving} | moving
         openings = dict(staging.openings())
+    _add_moving(objects, openings)
     objects |= {name: carrying(objects[name]) for name in _bare_carriers(scene, objects)}
     if all(can_move(model) for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
@@ -151,6 +153,15 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         heights,
         openings,
     )
+
+
+def _add_moving(objects: dict[str, ObjectModel], openings: dict[str, Opening | str]) -> None:
+    """Add the moving parts of the catalog's models, and how they open."""
+    for name, model in tuple(objects.items()):
+        if model.moving is not None and model.moving.joint is not None:
+            part, joint = f"{name}/{model.moving.name}", replace(model.moving.joint, parent=name)
+            objects[part] = replace(model.moving, joint=joint)
+            openings[name] = opening_of(name, {model.moving.name: (part, joint)}, None)
 
 
 def _bare_carriers(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[str]:

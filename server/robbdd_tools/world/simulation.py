@@ -62,7 +62,8 @@ class Simulation:
         names = (*world.cast.objects, *world.cast.agents)
         self.belts = Belts(self.model, list(world.cast.objects))
         self._column = {name: index for index, name in enumerate(names)}
-        self._grips = Grips(self.model, self.robots, self._column, self._free)
+        parts = [name for name, model in world.cast.objects.items() if model.joint is not None]
+        self._grips = Grips(self.model, self.robots, self._column, [*self._free, *parts])
         # Views of the engine's memory, whose address is constant: creating them in every tick is slower.
         self._qpos: FloatArray = self.data.qpos
         self._qvel: FloatArray = self.data.qvel
@@ -73,7 +74,6 @@ class Simulation:
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
         ]
-        parts = [name for name, model in world.cast.objects.items() if model.joint is not None]
         self._tools += [(body.xpos, body.xmat) for body in (self.data.body(name) for name in parts)]
         limited = {element for element, name in world.cast.judged if name == "force_limit"}
         self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
@@ -252,7 +252,7 @@ class Simulation:
 
     def _held_by(self, agent: str) -> list[str]:
         held = self._grips.held[agent]
-        return [name for name in self._free if held[self._column[name]]] if held.any() else []
+        return [name for name in self.world.cast.objects if held[self._column[name]]] if held.any() else []
 
     def _go_home(self) -> None:
         for robot in self.robots.values():

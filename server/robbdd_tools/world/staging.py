@@ -17,7 +17,7 @@ from robbdd_tools.world.frames import Frames
 from robbdd_tools.world.gripper_faces import refuse_smooth_faces
 from robbdd_tools.world.model_files import FromFile, MovingPart, load, object_from, usable
 from robbdd_tools.world.openings import opening_of
-from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name
+from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name, shape_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 
@@ -45,11 +45,6 @@ class DeclaredPair:
         values = ((name, getattr(pair, name)) for name in PAIR)
         kept = {name: value if isinstance(value, int | float) else list(value) for name, value in values}
         return DeclaredPair(number, (str(pair.geomname1), str(pair.geomname2)), kept)
-
-
-def shape_name(owner: str, shape: str | int) -> str:
-    """Return the name of a geom in the world: of an element by the number of its shape, of scenery by its name."""
-    return f"{owner}/shape{shape}" if isinstance(shape, int) else f"{owner}/{shape}"
 
 
 class Staging:
@@ -118,7 +113,8 @@ class Staging:
             if found is None:
                 raise SceneError(f"the catalog has no object '{chosen.name}'", origin=chosen.origin)
             if chosen.opening is not None:
-                raise SceneError(f"the catalog's '{chosen.name}' has no joint to open", origin=chosen.origin)
+                text = f"how the catalog's '{chosen.name}' opens cannot be stated: only files have joints of their own"
+                raise SceneError(text, origin=chosen.origin)
             return found
         name = next((name for _, name in chosen.bodies), "")
         # A pose in a file of its own is meaningless in the scene.
