@@ -99,8 +99,10 @@ def bare(statement: Statement | None) -> object:
             return bare(operand)
         case stated.Junction(operator, operands):
             return (operator, *map(bare, operands))
-        case stated.Fluent() | stated.BehaviourCall():
-            return replace(statement, iri="") if isinstance(statement, stated.Fluent) else statement
+        case stated.Fluent():
+            return replace(statement, iri="")
+        case stated.BehaviourCall():
+            return replace(statement, part="", start="", end="")
         case stated.Text(words, time):
             return "text", _words(words), time, statement.condition
         case _:
