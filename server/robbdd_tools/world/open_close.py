@@ -105,7 +105,7 @@ class OpenClose:
         assert model.joint is not None, "a moving part has a joint"
         assert model.joint.handle is not None, "its handle is known"
         handle = replace(model, shapes=(model.shapes[model.joint.handle],))
-        grasps = self._hand.gripper.grasps(f"the handle of {name}", handle, *simulation.pose(part))
+        grasps = self._hand.gripper.grasps(f"the handle of {name}", handle, *simulation.seen(part))
         clearance = Clearance(simulation, robot, part, simulation.data, model.joint.handle)
         missed = Obstruction()
         found = list(approaches_by(robot, grasps, clearance, missed))

@@ -61,7 +61,7 @@ class PushObject:
 
     def _way_to(self, name: str, workspaces: Sequence[str]) -> FloatArray:
         """Return the shortest horizontal way (2,) m into a workspace; zeros if the object is in it."""
-        position, _ = self._simulation.pose(name)
+        position, _ = self._simulation.seen(name)
         regions = self._simulation.world.cast.regions
         ways = [
             self._way_into(position, carrier, region)
@@ -71,7 +71,7 @@ class PushObject:
         return min(ways, key=lambda way: float(np.linalg.norm(way)))
 
     def _way_into(self, position: FloatArray, carrier: str, region: Region) -> FloatArray:
-        place, rotation = self._simulation.pose(carrier)
+        place, rotation = self._simulation.seen_place(carrier)
         local = (rotation.T @ (position - place) - region.center)[:2]
         room = np.maximum(np.array(region.half[:2]) - INSIDE, 0.0)
         if (np.abs(local) <= room).all():
@@ -85,7 +85,7 @@ class PushObject:
         hand, simulation = self._hand, self._simulation
         length = float(np.linalg.norm(way))
         ahead = np.array([*(way / length), 0.0])
-        start, rotation = simulation.pose(name)
+        start, rotation = simulation.seen(name)
         outline = outline_of(simulation.world.cast.objects[name])
         points = [(rotation @ np.array(point), radius) for point, radius in outline]
         back = max(radius - float(ahead @ point) for point, radius in points)
@@ -101,7 +101,7 @@ class PushObject:
         yield from hand.move(path[0], hand.robot.model.approach_speed)
 
         def is_over() -> bool:
-            moved = (simulation.pose(name)[0] - start)[:2]
+            moved = (simulation.seen(name)[0] - start)[:2]
             along = float(ahead[:2] @ moved)
             return along >= length or float(np.linalg.norm(moved - along * ahead[:2])) > ASIDE
 
