@@ -10,11 +10,11 @@ import numpy as np
 from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
 from robbdd_tools.world.errors import BehaviourError, SceneError
-from robbdd_tools.world.hand_over import HandOver
 from robbdd_tools.world.open_close import OpenClose, opening_by_handle
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.push_object import PushObject
 from robbdd_tools.world.timed_pick_place import TimedPickPlace
+from robbdd_tools.world.transfer import HandOver
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
 if TYPE_CHECKING:

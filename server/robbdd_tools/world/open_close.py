@@ -82,7 +82,7 @@ class OpenClose:
         return float(self._simulation.data.qpos[joint.qposadr[0]])
 
     def _bring(self, name: str, opening: Opening, goal: float) -> Step:
-        """Grip the handle, bring the joint to a position, and let go."""
+        """Grip the handle, bring the joint to a position, and release it."""
         hand = self._hand
         approach = self._choose_grasp(name, opening.part)
         yield from hand.gripper.release(hand)
