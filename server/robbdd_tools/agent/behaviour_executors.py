@@ -94,6 +94,8 @@ class BehaviourExecutors:
         """
         if call.behaviour in ("open", "close") and not self.is_users:
             opening_by_handle(self._simulation.world.cast, call.element("object"))
+        if call.behaviour == "push" and not self.is_users and not self._simulation.has_physics:
+            raise SceneError("'push' needs physics: nothing is pushed in the kinematic world")
         if call.behaviour == "hand-over" and len(set(call.agents)) < len(call.agents):
             raise SceneError(f"'{call.element('agent')}' cannot hand over to itself")
         places = call.places if "workspace" in call.arguments else ()

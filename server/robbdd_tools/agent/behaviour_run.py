@@ -15,11 +15,13 @@ from robbdd_tools.catalog.coordination import DEFINED, EXTERNAL, emitter
 from robbdd_tools.catalog.executors import DEFAULT, executes
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
+from robbdd_tools.monitor.without_physics import KINEMATIC, WORLD
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError, at
 from robbdd_tools.world.extent import outline_of
+from robbdd_tools.world.kinematic import KinematicSimulation
 from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.scene import contents_of
 from robbdd_tools.world.simulation import Simulation
@@ -71,7 +73,7 @@ class BehaviourRun:
         self._groups = groups_of(self._calls)
         self.tree = None if spec.tree is None else _tree_run(spec.tree, self)
         world = build_world(spec.scene, spec.seed, actor, spec.instance)
-        self.simulation = Simulation(world)
+        self.simulation = KinematicSimulation(world) if spec.world == KINEMATIC else Simulation(world)
         carriers = {carrier for name in self._timing.touching for carrier, _ in world.cast.regions.get(name, ())}
         self.simulation.watch_touches(self._timing.touching | carriers)
         self.quantities = OnDemandQuantities(self.simulation)
@@ -97,7 +99,7 @@ class BehaviourRun:
         self._idle_arms = IdleArms((agent for call in self._calls for agent in call.agents), self._executors.park)
         self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
         self.correct_places = spec.scene.correct_places
-        self.settings = read_back(self.simulation, spec.scene)
+        self.settings = {**read_back(self.simulation, spec.scene), **({WORLD: KINEMATIC} if spec.world else {})}
         self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
         self._settle()
         if spec.fault is not None:

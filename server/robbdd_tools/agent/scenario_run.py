@@ -22,6 +22,7 @@ from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, judged_clause, stated_by_step
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
+from robbdd_tools.monitor.without_physics import NO_CONTACTS
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
 from robbdd_tools.protocol.messages import (
     VIEWER,
@@ -167,6 +168,8 @@ class ScenarioRun:
             if index is None:
                 return unknown(no_step(text), Cause.NO_STEP)
             done, place = execution.run_behaviour(index), execution.chosen(index)
+            if done and not execution.simulation.has_physics:
+                return unknown(f"executed as commanded; {NO_CONTACTS}", Cause.UNOBSERVED)
             if done:
                 return Verdict(Outcome.HOLDS, reason=f"placed at {place}" if place else "")
             if execution.broken:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from robbdd_tools.commands.arguments import allow_selection, positive
+from robbdd_tools.monitor.without_physics import KINEMATIC
 
 if TYPE_CHECKING:
     from robbdd_tools.commands.resume import ResumeOptions
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 CHOOSING = (
     "scenario", "seed", "repeat", "bhv", "scenex", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
+    "world",
 )  # fmt: skip
 """Arguments that define what a new run executes and whether it is kept."""
 
@@ -33,6 +35,8 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     text = "execute a catalog behaviour instead of this implementation of a .bddx, such as a ROS action; repeats"
     parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
     allow_scenex(parser)
+    text = "the simulator; in the kinematic one things move as commanded, and clauses about contacts are unknown"
+    parser.add_argument("--world", choices=("physics", KINEMATIC), help=text)
     allow_policy(parser)
     text = "wait for a debugger of Python code on this port of 127.0.0.1; one process, no time limit (default: 5678)"
     parser.add_argument("--debug", metavar="PORT", type=port, nargs="?", const=DEBUGPY_PORT, help=text)
@@ -112,6 +116,7 @@ def run_options(options: argparse.Namespace) -> RunOptions:
         options.pairwise,
         options.seed,
         substitutions=dict(options.bhv or ()),
+        world=KINEMATIC if options.world == KINEMATIC else "",
     )
     outputs = _outputs(options, keep=not options.no_store)
     return RunOptions(

@@ -322,8 +322,8 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
-    """Return a text for each distinct substitution of a behaviour, and for each scene instance that the user chose."""
-    found = (one for scenario in scenarios for one in (scenario.substitution, scenario.scene_instance))
+    """Return a text for each distinct choice of the user: substitutions of behaviours, scene instances, worlds."""
+    found = (one for scenario in scenarios for one in (scenario.substitution, scenario.scene_instance, scenario.world))
     return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 
 

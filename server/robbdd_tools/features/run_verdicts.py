@@ -73,6 +73,7 @@ class JudgedScenario:
     - ``seed``: the seed that the user gave for the run, or ``None``.
     - ``substitution``: the catalog behaviour that was executed instead of the model's.
     - ``scene_instance``: the scene instance that the user chose.
+    - ``world``: what the results say about a world without physics; ``None`` for physics.
     - ``project``: the root folder of the model's project. Models of different projects may have the same IRIs.
     """
 
@@ -93,6 +94,7 @@ class JudgedScenario:
     seed: int | None = None
     substitution: Substitution | None = None
     scene_instance: ChosenScene | None = None
+    world: str | None = None
     project: str = ""
 
     @property

@@ -9,6 +9,7 @@ from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import never_judged
+from robbdd_tools.protocol.specs import NO_PHYSICS
 from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.report import failure_words, margin, values_words, verdict_words
 from robbdd_tools.run.store import project_root
@@ -45,6 +46,7 @@ def judged_scenario(
         seed=seed,
         substitution=spec.substitution,
         scene_instance=spec.chosen_scene,
+        world=NO_PHYSICS if spec.world else None,
         project=project,
     )
 

@@ -20,9 +20,10 @@ from robbdd_tools.monitor.time import (
     occurrence_times,
     window,
 )
-from robbdd_tools.monitor.unobserved import Unobserved, no_grip
+from robbdd_tools.monitor.unobserved import Unobserved, gap_around, no_grip
 from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Verdict, conjunction, unknown
+from robbdd_tools.monitor.without_physics import need_contacts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,6 +86,7 @@ class WindowEvidence:
         At the first sample, it is the mean speed until the next sample. In a trace of one sample, it is NaN. Raises
         ``KeyError`` and ``Unobserved``.
         """
+        need_contacts(self.trace.settings)
         turns, times = self.trace.orientations[:, self.trace.column(name)], self.trace.times
         if len(times) < 2:
             return np.full(1, np.nan)
@@ -117,18 +119,10 @@ class WindowEvidence:
         """
         if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
             unseen = np.isnan(self.trace.positions[:, self.trace.column(name)].sum(axis=1))
-            raise Unobserved(f"{name} was not observed {self._gap(unseen, float(times[int(np.argmax(missing))]))}")
+            raise Unobserved(
+                f"{name} was not observed {gap_around(self.trace.times, unseen, float(times[int(np.argmax(missing))]))}"
+            )
         return values
-
-    def _gap(self, unseen: NDArray[np.bool_], time: float) -> str:
-        """Return the gap in observations that contains a time (s), in words. ``unseen`` (samples of the trace,)."""
-        known = self.trace.times[~unseen]
-        before, after = known[known < time], known[known > time]
-        if before.size and after.size:
-            return f"between {before[-1]:.2f} s and {after[0]:.2f} s"
-        if before.size:
-            return f"after {before[-1]:.2f} s"
-        return f"before {after[0]:.2f} s" if after.size else "at any time"
 
     def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:
         return np.maximum(np.searchsorted(self.trace.times, times + TOLERANCE, side="right") - 1, 0)
@@ -139,6 +133,7 @@ class WindowEvidence:
 
     def force(self, agent: str, name: str) -> FloatArray:
         """Return the largest contact force since the previous sample, N, shape (n,). Raises ``KeyError``."""
+        need_contacts(self.trace.settings)
         trace, pair = self.trace, (agent, name)
         if pair in trace.forces:
             return trace.forces[pair][self._rows]
@@ -148,6 +143,7 @@ class WindowEvidence:
 
     def touch(self, one: str, other: str) -> FloatArray:
         """Return the largest contact force since the previous sample, N, shape (n,). Raises ``KeyError``."""
+        need_contacts(self.trace.settings)
         trace = self.trace
         for first, second in ((one, other), (other, one)):
             if (first, second) in trace.touches:
@@ -174,7 +170,7 @@ class WindowEvidence:
         every = self.trace.joint_clearances[agent]
         shares = every[self._rows]
         if self.trace.log and (missing := np.isnan(shares)).any():
-            gap = self._gap(np.isnan(every), float(self.times[int(np.argmax(missing))]))
+            gap = gap_around(self.trace.times, np.isnan(every), float(self.times[int(np.argmax(missing))]))
             raise Unobserved(f"the joints of {agent} were not observed {gap}")
         return shares
 
@@ -189,6 +185,7 @@ class WindowEvidence:
 
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
+        need_contacts(self.trace.settings)
         return name in self.trace.immovable
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
@@ -216,6 +213,7 @@ class WindowEvidence:
 
         Raises ``KeyError``, and ``Unobserved`` if it was not observed throughout the window.
         """
+        need_contacts(self.trace.settings)
         trace = self.trace
         if trace.log and (agent not in trace.grips or name not in trace.names):
             raise Unobserved(no_grip(agent, name if agent in trace.grips else ""))

@@ -2,6 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from robbdd_tools.catalog.api import FloatArray
+
 
 class Unobserved(Exception):
     """There is no observation on which to judge. The message gives the reason."""
@@ -17,3 +25,14 @@ def no_grip(agent: str, unseen: str) -> str:
         f"the log does not say what {agent} holds: add --grip {holder}=SIGNAL of its gripper, "
         f"or record texts on /{holder}/holds"
     )
+
+
+def gap_around(times: FloatArray, unseen: NDArray[np.bool_], time: float) -> str:
+    """Return the gap in observations that contains a time (s), in words; ``times`` (n,) s and ``unseen`` (n,)."""
+    known = times[~unseen]
+    before, after = known[known < time], known[known > time]
+    if before.size and after.size:
+        return f"between {before[-1]:.2f} s and {after[0]:.2f} s"
+    if before.size:
+        return f"after {before[-1]:.2f} s"
+    return f"before {after[0]:.2f} s" if after.size else "at any time"

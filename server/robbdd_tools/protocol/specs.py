@@ -11,6 +11,7 @@ from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import ChosenScene, Implementation, SceneInstance, Substitution
 from robbdd_tools.catalog.robot_faults import RobotFault
 from robbdd_tools.monitor.policy import Policy
+from robbdd_tools.monitor.without_physics import KINEMATIC
 from robbdd_tools.protocol.clauses import DefinedEvent, Statement
 
 
@@ -67,6 +68,8 @@ class ExecutionSpec:
     timeout: float | None = None
 
 
+NO_PHYSICS = "kinematic world: no physics"
+"""How results say that a scenario was executed in the kinematic world."""
 PROBE = "probe"
 """Role of a clause that the model does not have. It is measured at the end of an execution, and decides no verdict."""
 
@@ -108,6 +111,7 @@ class ScenarioSpec:
     - ``tree``: the execution of a behaviour tree. All scenarios with the same tree execution are judged from it, and
       have its scene and seed.
     - ``node``: the IRI of the tree's node that is linked to this scenario.
+    - ``world``: the simulator, ``KINEMATIC``, or empty for physics.
     - ``chosen_instance``: the scene instance that the user chose, for a scenario whose execution has none.
     - ``fault``: a fault that the robots have in this execution.
     """
@@ -129,6 +133,7 @@ class ScenarioSpec:
     tree: TreeSpec | None = None
     node: str = ""
     chosen_instance: SceneInstance | None = None
+    world: str = ""
     fault: RobotFault | None = None
     defined: tuple[DefinedEvent, ...] = ()
 
@@ -148,8 +153,9 @@ class ScenarioSpec:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """The user's choices that the model does not state, in words: a behaviour, a scene instance."""
-        return tuple(str(one) for one in (self.substitution, self.chosen_scene) if one is not None)
+        """The user's choices that the model does not state, in words: a behaviour, a scene instance, a world."""
+        choices = (self.substitution, self.chosen_scene, NO_PHYSICS if self.world == KINEMATIC else None)
+        return tuple(str(one) for one in choices if one is not None)
 
     @property
     def substitution(self) -> Substitution | None:

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from robbdd_tools.catalog.executable import ChosenScene, Substitution
 from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.specs import NO_PHYSICS
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,7 @@ class ExecutionResult:
     - ``duration``: simulated time in s; ``None`` if the execution did not finish.
     - ``substitution``: the catalog behaviour that was executed instead of the model's implementation, or ``None``.
     - ``scene_instance``: the scene instance of a ``.scenex`` that the user chose, or ``None``.
+    - ``world``: ``kinematic``, or empty for physics.
     """
 
     index: int
@@ -68,11 +70,13 @@ class ExecutionResult:
     clauses: tuple[ClauseResult, ...]
     substitution: Substitution | None = None
     scene_instance: ChosenScene | None = None
+    world: str = ""
 
     @property
     def choices(self) -> tuple[str, ...]:
         """The user's choices that the model does not state, in words."""
-        return tuple(str(one) for one in (self.substitution, self.scene_instance) if one is not None)
+        choices = (self.substitution, self.scene_instance, NO_PHYSICS if self.world else None)
+        return tuple(str(one) for one in choices if one is not None)
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield one flat dictionary for each clause. The values of variables are in columns called ``value.NAME``."""
@@ -85,6 +89,7 @@ class ExecutionResult:
             "execution": self.execution,
             "substitution": "" if self.substitution is None else str(self.substitution),
             "scene_instance": "" if self.scene_instance is None else str(self.scene_instance),
+            "world": self.world or "physics",
             "seed": self.seed,
             "duration": self.duration,
             "scenario_verdict": str(self.verdict),
@@ -125,6 +130,7 @@ def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
         tuple(map(_clause, entry["clauses"])),
         Substitution(**entry["substitution"]) if entry.get("substitution") else None,
         ChosenScene(**entry["scene_instance"]) if entry.get("scene_instance") else None,
+        entry.get("world", ""),
     )
 
 

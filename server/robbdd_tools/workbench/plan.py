@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,6 +54,7 @@ class Selection:
       execute instead.
     - ``default_substitutions``: like ``substitutions``, but implementations that the models lack are ignored.
     - ``instances``: scene instances. A scenario without an execution runs in the one that instantiates its scene.
+    - ``world``: the simulator, such as ``kinematic``; empty for physics.
     - ``default_instances``: like ``instances``, but scenarios whose scene has none are placed as without.
     - ``points``: values of variables that replace those of the models.
     """
@@ -71,6 +72,7 @@ class Selection:
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
     instances: Sequence[SceneInstance] = ()
     default_instances: Sequence[SceneInstance] = ()
+    world: str = ""
     points: Points | None = None
 
     def wanted(self) -> Wanted:
@@ -285,6 +287,7 @@ class _Planner:
             scenarios,
             executions,
             is_wanted=selection.admits_spec,
+            completed=partial(replace, world=selection.world) if selection.world else None,
         )
 
     def _in_instances(self, model: AcceptanceModel, executions: Sequence[Execution]) -> AcceptanceModel:

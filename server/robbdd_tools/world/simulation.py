@@ -120,6 +120,22 @@ class Simulation:
         return (position if self._disturbance is None else self._disturbance.seen_place(position)), rotation
 
     @property
+    def has_physics(self) -> bool:
+        """Whether forces and contacts move things."""
+        return True
+
+    @property
+    def state(self) -> FloatArray:
+        """The positions of all joints and loose objects, shape (q,)."""
+        return self._qpos.copy()
+
+    def restore(self, state: FloatArray) -> None:
+        """Put everything at the positions of a state, at rest; the recording and the clock stay as they are."""
+        self._qpos[:] = state
+        self._qvel[:] = 0.0
+        mujoco.mj_forward(self.model, self.data)
+
+    @property
     def time(self) -> float:
         """Simulated time of the last sample, s."""
         return round(self.ticks * TICK, 6)
@@ -167,14 +183,18 @@ class Simulation:
         """Record a sample of the current world."""
         # Positions in the engine's data lag by one step until recomputed.
         mujoco.mj_kinematics(self.model, self.data)
-        self._grips.find(self.data)
-        self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
-        if self.touches is not None:
-            self.touches.record()
+        self._sense()
         rows = self.recorder.append(self.time, self._qpos, self._grips.held)
         for row, (position, rotation) in zip(rows, self._tools, strict=True):
             row[:3] = position
             mujoco.mju_mat2Quat(row[3:], rotation)
+
+    def _sense(self) -> None:
+        """Find what each gripper holds, and take a sample of the contact forces."""
+        self._grips.find(self.data)
+        self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
+        if self.touches is not None:
+            self.touches.record()
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
         """Return the recording so far, without copying it."""
@@ -184,6 +204,10 @@ class Simulation:
         """Return position (3,) m and rotation matrix (3, 3) of an object in the world frame; raises ``KeyError``."""
         body = self.data.body(name)
         return body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+
+    def tool(self, robot: Robot) -> tuple[FloatArray, FloatArray]:
+        """Return position (3,) m and rotation matrix (3, 3) of an arm's tool in the world frame."""
+        return self.data.site_xpos[robot.tool].copy(), self.data.site_xmat[robot.tool].reshape(3, 3).copy()
 
     def holds(self, agent: str, name: str) -> bool:
         """Whether the agent's gripper holds the object."""

@@ -17,13 +17,13 @@ from robbdd_tools.world.motion import frame_of, tool_pose
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, FloatArray
     from robbdd_tools.catalog.executable import Implementation
-    from robbdd_tools.world.simulation import Simulation
+    from robbdd_tools.world.simulator import Simulator
 
 
 class AgentWorld:
     """``robbdd_tools.catalog.own_behaviour.World`` for one agent of a simulation."""
 
-    def __init__(self, simulation: Simulation, agent: str, emit: Callable[[str], None]) -> None:
+    def __init__(self, simulation: Simulator, agent: str, emit: Callable[[str], None]) -> None:
         self._simulation = simulation
         self._robot = simulation.robots[agent]
         self._arm = arm_of(self._robot.model)
@@ -42,8 +42,7 @@ class AgentWorld:
     @property
     def tool(self) -> tuple[FloatArray, FloatArray]:
         """Position (m) and rotation matrix of the tool."""
-        data, site = self._simulation.data, self._robot.tool
-        return data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy()
+        return self._simulation.tool(self._robot)
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
         """Return position (m) and rotation matrix of an object; raises ``KeyError``."""

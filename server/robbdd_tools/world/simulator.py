@@ -1,0 +1,86 @@
+"""The door to simulators: what agents and controllers need from a simulated world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import EventStamp, Trace
+    from robbdd_tools.world.composition import World
+    from robbdd_tools.world.robot import Robot
+
+
+class Simulator(Protocol):
+    """A world that is set up by its constructor and advances in control ticks. Metres, radians, seconds, world frame.
+
+    - set up: the constructor takes a ``World``; ``settle`` brings it to rest and starts the clock.
+    - step: ``tick``.
+    - observe: ``pose``, ``tool``, ``holds``, ``joint_positions``, ``trace``, and ``seen`` as a robot with faults would.
+    - command: ``command``.
+    - snapshot: ``state`` and ``restore``.
+    """
+
+    world: World
+    """The compiled scene."""
+    robots: dict[str, Robot]
+    """The arms, by the names of their agents."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the last sample, s."""
+        ...
+
+    @property
+    def has_physics(self) -> bool:
+        """Whether forces and contacts move things. Otherwise, clauses about them are unknown."""
+        ...
+
+    def settle(self) -> None:
+        """Bring the world to rest, start the clock and take the first sample. Raises ``SimulationError``."""
+        ...
+
+    def tick(self) -> None:
+        """Advance by one control tick with the current commands and take a sample. Raises ``SimulationError``."""
+        ...
+
+    def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return position (3,) m and rotation matrix (3, 3) of an object; raises ``KeyError``."""
+        ...
+
+    def seen(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return the pose of an object as the robots perceive it, in the form of ``pose``."""
+        ...
+
+    def seen_place(self, carrier: str) -> tuple[FloatArray, FloatArray]:
+        """Return the pose of an object that carries a goal as the robots perceive it, in the form of ``pose``."""
+        ...
+
+    def tool(self, robot: Robot) -> tuple[FloatArray, FloatArray]:
+        """Return position (3,) m and rotation matrix (3, 3) of an arm's tool."""
+        ...
+
+    def holds(self, agent: str, name: str) -> bool:
+        """Return whether the gripper of an agent holds an object."""
+        ...
+
+    def joint_positions(self, robot: Robot) -> FloatArray:
+        """Return the positions of an arm's joints, rad, shape (n,)."""
+        ...
+
+    def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
+        """Move an arm's joints to positions (rad, shape (n,)) within one tick, and set its gripper."""
+        ...
+
+    def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
+        """Return the samples so far."""
+        ...
+
+    @property
+    def state(self) -> FloatArray:
+        """The positions of all joints and loose objects, which a picture needs, shape (q,)."""
+        ...
+
+    def restore(self, state: FloatArray) -> None:
+        """Put everything at the positions of a state, at rest; the recording and the clock stay as they are."""
+        ...
