@@ -142,6 +142,7 @@ def _run(options: RunOptions) -> int:
             seed=own,
             default_seed=failed.default_seed,
             default_substitutions=failed.substitutions,
+            world=selection.world or failed.world,
         )
         scenex = scenex or failed.scenex
         repeat = repeat or failed.repeat

@@ -116,7 +116,7 @@ def run_options(options: argparse.Namespace) -> RunOptions:
         options.pairwise,
         options.seed,
         substitutions=dict(options.bhv or ()),
-        world=KINEMATIC if options.world == KINEMATIC else "",
+        world=options.world or "",
     )
     outputs = _outputs(options, keep=not options.no_store)
     return RunOptions(

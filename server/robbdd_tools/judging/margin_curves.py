@@ -16,6 +16,7 @@ from robbdd_tools.judging.decisions import Instance, alternatives
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence, margins_of
 from robbdd_tools.monitor.time import Window
+from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.protocol.clauses import BehaviourCall, Clause, Fluent, Junction, Text
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def fluent_margins(fluent: Fluent, evidence: WindowEvidence) -> FloatArray:
 def unit_of(fluent: Fluent, trace: Trace, regions: Regions) -> str:
     """Return the unit of a fluent's margins; empty if they have none."""
     if fluent.predicate.unit_for is not None:
-        with suppress(KeyError, IndexError, StopIteration):
+        with suppress(KeyError, IndexError, StopIteration, Unobserved):
             first = next(next(alternatives(fluent)))
             return fluent.predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), first.arguments)
     return fluent.predicate.unit

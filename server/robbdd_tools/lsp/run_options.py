@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.monitor.without_physics import KINEMATIC
 from robbdd_tools.workbench.choice import Choice, Listed
 from robbdd_tools.workbench.model import ModelErrors, read_instances
 from robbdd_tools.workbench.plan import Selection
@@ -125,6 +126,7 @@ def select(
     defaults = defaults or RunDefaults()
     substitutions = defaults.bhv
     scenex: tuple[Path, ...] = ()
+    world = ""
     if options.only is not None:
         choices.append(Choice(map(_listed, options.only)))
     if options.variation is not None:
@@ -135,7 +137,7 @@ def select(
         seed = failed.seed if seed is None else seed
         repeat = repeat or failed.repeat
         substitutions = {**substitutions, **failed.substitutions}
-        scenex = failed.scenex
+        scenex, world = failed.scenex, failed.world
     if options.scenex is not None:
         scenex = ((uri_to_path(options.uri) or Path()).parent / options.scenex,)
     instances = read_instances(scenex) if scenex else _instances_of(defaults)
@@ -151,6 +153,7 @@ def select(
         default_substitutions=substitutions,
         instances=() if options.scenex is None else instances,
         default_instances=instances,
+        world=world,
     )
     return selection, repeat
 
@@ -177,7 +180,14 @@ def _failed(failed: Sequence[JudgedScenario]) -> Failed:
     substitutions = {one.implementation: one.executed for one in substituted}
     chosen = (Path(one.scene_instance.file) for one in failed if one.scene_instance is not None)
     repeat = repeated if repeated > 1 else None
-    return Failed(Choice(listed), newest.seed, repeat, substitutions=substitutions, scenex=tuple(dict.fromkeys(chosen)))
+    return Failed(
+        Choice(listed),
+        newest.seed,
+        repeat,
+        substitutions=substitutions,
+        scenex=tuple(dict.fromkeys(chosen)),
+        world=KINEMATIC if newest.world else "",
+    )
 
 
 def _listed(entry: Mapping[str, Any]) -> Listed:

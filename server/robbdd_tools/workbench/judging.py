@@ -138,6 +138,7 @@ def selection_of(place: StoredRun, manifest: Manifest, keys: Collection[str]) ->
         seed=place.record().user_seed,
         default_seed=manifest.seed,
         default_substitutions=substitutions_of(manifest.scenarios),
+        world=next((spec.world for spec in manifest.scenarios), ""),
         default_instances=instances_of(manifest.scenarios),
     )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
+from robbdd_tools.monitor.without_physics import KINEMATIC
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all, specs_of
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
@@ -287,7 +288,7 @@ class _Planner:
             scenarios,
             executions,
             is_wanted=selection.admits_spec,
-            completed=partial(replace, world=selection.world) if selection.world else None,
+            completed=partial(replace, world=KINEMATIC) if selection.world == KINEMATIC else None,
         )
 
     def _in_instances(self, model: AcceptanceModel, executions: Sequence[Execution]) -> AcceptanceModel:

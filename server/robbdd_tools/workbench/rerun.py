@@ -30,6 +30,7 @@ class Failed:
     - ``default_seed``: the seed of scenarios that have no seed of their own.
     - ``substitutions``: the substitutions of the run.
     - ``scenex``: the files of the scene instances that the user chose.
+    - ``world``: the world that the user chose; empty for physics.
     """
 
     choice: Choice
@@ -38,6 +39,7 @@ class Failed:
     default_seed: int = DEFAULT_SEED
     substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
     scenex: tuple[Path, ...] = ()
+    world: str = ""
 
 
 def last_run(store: RunStore, model: Path) -> StoredRun:
@@ -68,4 +70,4 @@ def failed_in(place: StoredRun) -> Failed:
     repeated = max(spec.repetition for spec in specs)
     repeat = repeated if repeated > 1 else None
     seed, substitutions = place.record().user_seed, substitutions_of(specs)
-    return Failed(Choice(listed), seed, repeat, results["seed"], substitutions, files_of(failed))
+    return Failed(Choice(listed), seed, repeat, results["seed"], substitutions, files_of(failed), failed[0].world)
