@@ -32,6 +32,18 @@ DOOR_XML = """<mujoco><worldbody><body name="frame"><geom type="box" size=".01 .
     <geom name="knob" type="cylinder" size=".014 .016" pos="-.065 .17 .02" mass=".04"/></body>
 </body></worldbody></mujoco>"""
 
+BAR_XML = """<mujoco><worldbody><body name="chest">
+  <geom type="box" size=".1 .12 .005" pos="0 0 .005"/><geom type="box" size=".1 .12 .003" pos="0 0 .073"/>
+  <geom type="box" size=".1 .005 .03" pos="0 .115 .04"/><geom type="box" size=".1 .005 .03" pos="0 -.115 .04"/>
+  <body name="box" pos="-.1 0 .012">
+    <joint type="slide" axis="-1 0 0" range="0 .14" damping="5" frictionloss="1"/>
+    <geom type="box" size=".09 .1 .003" pos=".09 0 .003" mass=".3"/>
+    <geom type="box" size=".005 .12 .03" pos="-.005 0 .03" mass=".2"/>
+    <geom type="box" size=".02 .004 .004" pos="-.03 .05 .045" mass=".02"/>
+    <geom type="box" size=".02 .004 .004" pos="-.03 -.05 .045" mass=".02"/>
+    <geom name="bar_handle" type="box" size=".005 .055 .005" pos="-.045 0 .045" mass=".05"/></body>
+</body></worldbody></mujoco>"""
+
 
 def call(behaviour: str, part: str, agent: str = PANDA, **slots: str) -> Call:
     return Call(behaviour, {"agent": agent, **slots}, part, iteration=1)
@@ -92,13 +104,13 @@ def test_what_is_open_or_closed_stays_as_it_is(behaviour: str, share: str) -> No
     assert np.ptp(positions(run)) < 1e-3
 
 
-def with_door(folder: Path, text: str) -> Execution:
-    """Return an execution in which the Panda opens a door from a file."""
+def with_door(folder: Path, text: str, place: tuple[float, float, float] = (0.5, 0.1, 0.1)) -> Execution:
+    """Return an execution in which the Panda opens and closes a door or a drawer from a file."""
     (folder / "door.xml").write_text(text, encoding="utf-8")
     source = ModelSource(
         "x:m", "mjcf", "file", "door.xml", bodies=(("x:g.door", ""),), origin=Origin(str(folder / "c.scenex"), 7, 11)
     )
-    staged = instance(link("x:g.door.foot", (0.5, 0.1, 0.1)), elements=(Realisation(DOOR, (source,)),))
+    staged = instance(link("x:g.door.foot", place), elements=(Realisation(DOOR, (source,)),))
     how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
     scene = SceneSpec(objects=(DOOR, "env:bench"), agents=(PANDA,), workspaces={"env:bench_ws": ("env:bench",)})
     spec = replace(scenario(scene, 1, events=EVENTS), execution=how)
@@ -111,6 +123,14 @@ def test_an_arm_opens_and_closes_a_door_by_its_knob(tmp_path: Path) -> None:
     assert run.completed == 2, run.course.failures
     assert positions(run, DOOR)[at(run, "t:open-end")] > 0.9 * 1.2217
     assert positions(run, DOOR)[-1] < 0.02 * 1.2217
+
+
+def test_fingers_fit_behind_a_bar_when_they_open_just_enough(tmp_path: Path) -> None:
+    run = with_door(tmp_path, BAR_XML, (0.6, 0.2, 0.1))
+    run.advance_until(lambda _: False)
+    assert run.completed == 2, run.course.failures
+    assert positions(run, DOOR)[at(run, "t:open-end")] > 0.9 * 0.14
+    assert positions(run, DOOR)[-1] < 0.02 * 0.14
 
 
 def test_a_door_without_a_handle_is_a_fault_of_the_model(tmp_path: Path) -> None:

@@ -27,8 +27,20 @@ class Hit:
 class Clearance:
     """Collision checks of one robot with the world in ``state`` at construction; nothing is stepped."""
 
-    def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any, shape: int | None = None) -> None:
-        """Ignore contacts with the object ``spare``, if any, or with one of its shapes: it is to be gripped."""
+    def __init__(
+        self,
+        simulation: Simulation,
+        robot: Robot,
+        spare: str,
+        state: Any,
+        shape: int | None = None,
+        control: float | None = None,
+    ) -> None:
+        """Ignore contacts with the object ``spare``, if any, or with one of its shapes: it is to be gripped.
+
+        The gripper is open, or at the value ``control`` of its actuator.
+        """
+        self._control = control
         self._model: Any = simulation.model
         self._data: Any = simulation.scratch
         self._state: FloatArray = state.qpos.copy()
@@ -49,7 +61,7 @@ class Clearance:
         """Return the deepest collision of the arm with open fingers."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._robot.joints] = joints
-        self._simulation.open_fingers(self._robot, self._data)
+        self._simulation.open_fingers(self._robot, self._data, self._control)
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)

@@ -11,7 +11,7 @@ from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.finger_motion import finger_motion
-from robbdd_tools.world.grasp import Grasp, finger_grasps, suction_grasps
+from robbdd_tools.world.grasp import PLAY, Grasp, finger_grasps, suction_grasps
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, ObjectModel, RobotModel
@@ -77,6 +77,16 @@ class Gripper(ABC):
     def close(self, hand: Hand) -> Step:
         """Close without an object, so that the gripper can push."""
 
+    def control_around(self, width: float) -> float:
+        """Return the control value of a gripper that is open just enough for a width (m), where this is known."""
+        del width
+        return self._robot.gripper_open
+
+    def open_to(self, hand: Hand, control: float) -> Step:
+        """Open or close to a control value."""
+        del control
+        yield from self.release(hand)
+
 
 class Fingers(Gripper):
     """Two fingers that close on an object and hold it by friction."""
@@ -102,16 +112,26 @@ class Fingers(Gripper):
 
     def release(self, hand: Hand) -> Step:
         """Open the fingers at their speed."""
-        while hand.control != self._robot.gripper_open:
-            step = CLOSING * TICK * self._motion.rate
-            hand.control = _towards(self._robot.gripper_open, hand.control, step)
-            yield from hand.wait(1)
+        yield from self.open_to(hand, self._robot.gripper_open)
 
     def close(self, hand: Hand) -> Step:
         """Close the fingers at their speed."""
-        while hand.control != self._robot.gripper_closed:
-            step = CLOSING * TICK * self._motion.rate
-            hand.control = _towards(self._robot.gripper_closed, hand.control, step)
+        yield from self.open_to(hand, self._robot.gripper_closed)
+
+    def control_around(self, width: float) -> float:
+        """Return the control value of fingers that are open just enough for a width (m).
+
+        It is that of the open gripper for fingers from files, whose positions in between are unknown.
+        """
+        if self._motion.open_joints:
+            return self._robot.gripper_open
+        less = max(0.0, self._robot.stroke - width - PLAY) / 2
+        return _towards(self._robot.gripper_closed, self._robot.gripper_open, less * self._motion.rate)
+
+    def open_to(self, hand: Hand, control: float) -> Step:
+        """Move the fingers to a control value at their speed."""
+        while hand.control != control:
+            hand.control = _towards(control, hand.control, CLOSING * TICK * self._motion.rate)
             yield from hand.wait(1)
 
 

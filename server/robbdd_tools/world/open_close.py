@@ -84,9 +84,10 @@ class OpenClose:
     def _bring(self, name: str, opening: Opening, goal: float) -> Step:
         """Grip the handle, bring the joint to a position, and release it."""
         hand = self._hand
-        approach = self._choose_grasp(name, opening.part)
+        approach, control = self._choose_grasp(name, opening.part)
         yield from hand.gripper.release(hand)
         yield from hand.move(approach.above)
+        yield from hand.gripper.open_to(hand, control)
         try:
             yield from hand.gripper.take(hand, approach.at, opening.part)
             hand.held = opening.part
@@ -94,27 +95,37 @@ class OpenClose:
         except BehaviourError as error:
             raise BehaviourError(str(error).replace(opening.part, f"the handle of {name}")) from error
         hand.held = None
-        yield from hand.gripper.release(hand)
+        # A finger between the handle and the thing has no more room than before.
+        yield from hand.gripper.open_to(hand, control)
         yield from hand.wait(round(hand.robot.model.release_time / TICK))
         yield from hand.move(hand.at_travel(hand.tool))
 
-    def _choose_grasp(self, name: str, part: str) -> Approach:
-        """Return the grasp of the handle with the most room for the hand; raises ``BehaviourError``."""
-        simulation, robot = self._simulation, self._hand.robot
+    def _choose_grasp(self, name: str, part: str) -> tuple[Approach, float]:
+        """Return a grasp of the handle that has room for the hand, and the control value of the gripper there.
+
+        The gripper is open or, where an open one has no room, open just enough for the handle. Raises
+        ``BehaviourError``.
+        """
+        simulation, hand, robot = self._simulation, self._hand, self._hand.robot
         model = simulation.world.cast.objects[part]
         assert model.joint is not None, "a moving part has a joint"
         assert model.joint.handle is not None, "its handle is known"
         handle = replace(model, shapes=(model.shapes[model.joint.handle],))
-        grasps = self._hand.gripper.grasps(f"the handle of {name}", handle, *simulation.seen(part))
-        clearance = Clearance(simulation, robot, part, simulation.data, model.joint.handle)
+        grasps = hand.gripper.grasps(f"the handle of {name}", handle, *simulation.seen(part))
         missed = Obstruction()
-        found = list(approaches_by(robot, grasps, clearance, missed))
-        free = [one for one in found if one.depth == 0.0]
-        for one in found:
-            missed.touched |= {} if one.depth == 0.0 else {one.touched: None}
-        if not free:
-            raise BehaviourError(f"{robot.name} cannot reach the handle of {name}{missed}")
-        return min(free, key=lambda one: abs(one.at.turn))
+        narrow = [hand.gripper.control_around(grasp.width) for grasp in grasps]
+        for controls in ([robot.model.gripper_open] * len(grasps), narrow):
+            free: list[tuple[Approach, float]] = []
+            for grasp, control in zip(grasps, controls, strict=True):
+                clearance = Clearance(simulation, robot, part, simulation.data, model.joint.handle, control)
+                for one in approaches_by(robot, [grasp], clearance, missed):
+                    if one.depth == 0.0:
+                        free.append((one, control))
+                    else:
+                        missed.touched[one.touched] = None
+            if free:
+                return min(free, key=lambda one: abs(one[0].at.turn))
+        raise BehaviourError(f"{robot.name} cannot reach the handle of {name}{missed}")
 
     def _path(self, opening: Opening, goal: float) -> list[ToolPose]:
         """Return the poses of the tool, fixed to the handle, while the joint moves to a position."""

@@ -238,8 +238,11 @@ class Simulation:
         leaks = robot.name in self._grips.leaking
         self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
 
-    def open_fingers(self, robot: Robot, data: Any) -> None:
-        """Put a robot's fingers into the open position in ``data``: the start, or a trial state."""
+    def open_fingers(self, robot: Robot, data: Any, control: float | None = None) -> None:
+        """Put a robot's fingers into the open position in ``data``: the start, or a trial state.
+
+        Fingers of the catalog are put where the value ``control`` of their actuator moves them, if it is given.
+        """
         motion = finger_motion(robot.model)
         for name, position in motion.open_joints:
             data.qpos[self.model.joint(f"{robot.name}/{name}").qposadr[0]] = position
@@ -248,7 +251,7 @@ class Simulation:
         for pad in robot.pads:
             body = self.model.body(int(self.model.geom_bodyid[pad]))
             for joint in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):
-                data.qpos[self.model.jnt_qposadr[joint]] = robot.model.gripper_open
+                data.qpos[self.model.jnt_qposadr[joint]] = robot.model.gripper_open if control is None else control
 
     def _step(self) -> None:
         began = perf_counter()
