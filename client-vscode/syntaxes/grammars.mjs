@@ -151,6 +151,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   phrases(`${PHRASE}.event`, "occurs"),
   { match: String.raw`(?<=>)\s*(at|to)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
   phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever", "the first", "the last", "every"),
+  { match: String.raw`(?<![\p{L}\p{N}_-])for(?=\s+[\d.])`, name: `${WORD}.time.robbdd` },
   phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
   phrases("keyword.operator.wordlike", "and", "or", "not"),
   phrases("keyword.control.order", "then", "meanwhile"),

@@ -7,12 +7,12 @@ export type Outcome = Immutable<answers.Outcome>;
 
 /** The outcome of a run; undefined if nothing was run. */
 export function outcomeOf(answer: unknown): Outcome | undefined {
-  return isRunAnswer(answer) && "stored" in answer ? (answer as Outcome) : undefined;
+  return isRunAnswer(answer) && "stored" in answer ? answer : undefined;
 }
 
 /** Why nothing was run, if so. */
 export function problemOf(answer: unknown): string | undefined {
-  return isRunAnswer(answer) && "problem" in answer ? (answer as answers.Refusal).problem : undefined;
+  return isRunAnswer(answer) && "problem" in answer ? answer.problem : undefined;
 }
 
 /** Whether the refusal is unrelated to the scenarios: another run is in progress, or nothing had failed. */
