@@ -39,7 +39,9 @@ def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind
         return
     used = used_names(snapshot, file.document.uri)
     declared = snapshot.scope(file.document.uri).own.names.of_kind.get(kind, {})
-    paths = sorted((path for path in declared if path not in used), key=lambda path: declared[path].place)
+    paths = sorted(
+        (path for path in declared if "." not in path and path not in used), key=lambda path: declared[path].place
+    )
     if not paths:
         return
     importers = (snapshot.file(uri) for uri in snapshot.importers(file.document.uri))
