@@ -64,6 +64,8 @@ HOMES = {
     "scipy": {"campaign"},
     "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
+    "msgpack": {"user_code"},
+    "websockets": {"user_code"},
 }
 # Packages of one rank that may import each other; all others of one rank may not.
 NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli"), ("commands", "dap")}
@@ -217,8 +219,9 @@ STARTS_PROCESSES = {
     *(f"asyncio.create_subprocess_{name}" for name in ("exec", "shell")),
     *(f"os.{name}" for name in ("system", "popen", "fork", "posix_spawn", "startfile", "execv", "execve", "spawnv")),
 }
-MAY_START_PROCESSES = {"base.interpreter", "base.processes"}
-"""The one starts interpreters, isolated from the working directory; the other starts a program of Windows."""
+MAY_START_PROCESSES = {"base.interpreter", "base.processes", "user_code.system_links"}
+"""The first starts interpreters, isolated from the working directory; the second starts a program of Windows; the third
+starts users' programs, which are users' code."""
 
 
 def started_processes(path: Path) -> Iterator[str]:

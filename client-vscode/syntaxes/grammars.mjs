@@ -236,14 +236,14 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   declaration(DECLARE, "entity.name.function.observation", "observation"),
   labels(
     PROPERTY,
-    ...["bhv action", "ros topic", "type", "update-rate", "provider", "horizon", "observations", "evaluator"],
+    ...["bhv action", "answer within", "ros topic", "type", "update-rate", "provider", "horizon", "observations", "evaluator"],
     ...["less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
     ...["variant", "scene inst", "bhv", "policies", "repeat", "seed", "timeout", "noise", "latency", "module", "attr"],
   ),
   phrases("storage.type.variable", "set var", "var"),
   phrases(`${PHRASE}.evaluator`, "linear distance", "angular distance"),
   phrases(`${PHRASE}.provider`, "ros simulation entity state", "simulation ground truth"),
-  phrases(WORD, "observes", "for", "and", "py", "catalog", "obj", "ws", "agn"),
+  phrases(WORD, "observes", "for", "and", "py", "catalog", "process", "endpoint", "obj", "ws", "agn"),
   phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation"),
 ]);
 

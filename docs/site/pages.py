@@ -23,6 +23,7 @@ SECTIONS = {
             "robots",
             "logs",
             "campaigns",
+            "external-systems",
             "comparing",
             "mutate",
             "falsify",

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from robbdd_tools import __version__
+from robbdd_tools.base.external_systems import ENDPOINT_HOSTS
 from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.base.printable import printable
@@ -63,6 +64,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collect_rarely()
     if getattr(options, "no_user_code", False):
         os.environ[NO_USER_CODE] = "1"
+    if getattr(options, "allow_host", None):
+        os.environ[ENDPOINT_HOSTS] = ",".join(options.allow_host)
     command: Callable[[argparse.Namespace], int] = options.command
     try:
         with end_requests(_end):
@@ -205,7 +208,8 @@ def _allow_refusal(*parsers: argparse.ArgumentParser) -> None:
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
     for parser in parsers:
-        text = "fetch JSON-LD contexts from this host; may be repeated (always: context-hosts in your settings)"
+        text = "fetch JSON-LD contexts from this host, and connect to its endpoints; may be repeated "
+        text += "(always: context-hosts and endpoint-hosts in your settings)"
         parser.add_argument("--allow-host", metavar="HOST", action="append", help=text)
 
 

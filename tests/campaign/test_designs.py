@@ -89,6 +89,30 @@ def test_points_replace_the_values_of_the_model_in_each_scenario(tmp_path: Path)
     assert len(set(seeds)) == len(seeds)
 
 
+QUANTITIES = (
+    VARIED.replace("var <fetch.drop>: { 0.2, 0.3 }", "var <fetch.drop>: { 20 cm, 0.3 m }")
+    .replace("<robot> has config travel_height = <drop>", "<robot> moves slower than 1 m/s")
+    .replace(
+        "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
+        "apart: holds(<part> is nearer than <drop> to <robot>, from <pick-start> until <place-end>)",
+    )
+)
+
+
+@pytest.mark.parametrize("design", ["latin-hypercube 12", "grid 12"])
+def test_quantities_stay_quantities_in_the_unit_of_the_range(tmp_path: Path, design: str) -> None:
+    settings = f"factor var <drop>: from 15 cm to 30 cm design: {design}"
+    study = load_study(write_study(tmp_path, f"{HEAD}{settings}\n}}\n", QUANTITIES))
+    assert [one.message for one in study.findings] == []
+    drops = {row[2] for row in values(study)}
+    assert all(15 <= float(one.removesuffix(" cm")) <= 30 for one in drops)
+    assert (len(drops), {bins.unit for bins in bins_of([{"a": one} for one in drops]).values()}) == (12, {"cm"})
+    for wrong in ("from 0.15 to 0.3", "from 1 N to 2 N"):
+        text = f"{HEAD}factor var <drop>: {wrong} design: {design}\n}}\n"
+        (found,) = load_study(write_study(tmp_path, text, QUANTITIES)).findings
+        assert found.message == "the values of 'drop' are quantities: write both bounds with a unit, m or cm or mm"
+
+
 def test_a_variable_without_a_range_keeps_its_values(tmp_path: Path) -> None:
     found = values(loaded(tmp_path, "factor var <drop>: from 0.2 to 0.4 design: latin-hypercube 3"))
     assert {row[3] for row in found} == {1, 2}

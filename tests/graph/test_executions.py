@@ -85,11 +85,18 @@ def test_executions_come_back_in_written_order(form: str) -> None:
     [
         ('bhv action: "/bdd/pickplace"', "ros-action", "/bdd/pickplace"),
         ('catalog "pick-place"', "catalog", "pick-place"),
+        ('process "./policy --fast"', "process", "./policy --fast"),
+        ('endpoint "ws://lab:9000/arm"', "endpoint", "ws://lab:9000/arm"),
     ],
 )
 def test_an_implementation_says_what_it_is(source: str, kind: str, name: str) -> None:
     text = BDDX.replace("py { module: my.arm, attr: Pick }", source)
     assert executions(text)[0].implementation == Implementation(X + "own", kind, name)
+
+
+def test_an_external_system_has_a_time_for_its_answers() -> None:
+    text = BDDX.replace("py { module: my.arm, attr: Pick }", 'process "./policy" answer within: 0.25 s')
+    assert executions(text)[0].implementation == Implementation(X + "own", "process", "./policy", limit=0.25)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Execute single behaviours: by controllers of the catalog, or by users' own classes."""
+"""Execute single behaviours: by controllers of the catalog, or by users' code."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
 from robbdd_tools.world.errors import BehaviourError, SceneError
+from robbdd_tools.world.external_behaviour import run_external_behaviour
 from robbdd_tools.world.open_close import OpenClose, opening_by_handle
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.push_object import PushObject
@@ -54,7 +55,7 @@ class BehaviourExecutors:
     @property
     def is_users(self) -> bool:
         """Whether users' code executes the behaviours."""
-        return self._implementation is not None and self._implementation.kind == "python"
+        return self._implementation is not None and self._implementation.is_users
 
     def introduce(self, fault: RobotFault, calls: Iterable[Call]) -> None:
         """Let the robots have a fault from now on. Raises ``SceneError`` if it cannot occur in some behaviour."""
@@ -109,7 +110,8 @@ class BehaviourExecutors:
             call = with_swapped_element(call, self._fault, self._simulation)
         if self._implementation is not None and self.is_users:
             world = AgentWorld(self._simulation, call.element("agent"), self._emit)
-            steps = run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
+            run = run_user_behaviour if self._implementation.kind == "python" else run_external_behaviour
+            steps = run(self._implementation, world, call.behaviour, call.arguments)
             return steps if self._simulation.pace == 1.0 else _at_pace(steps, self._simulation.pace)
         match call.behaviour:
             case "pick":

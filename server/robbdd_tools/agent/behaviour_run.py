@@ -317,7 +317,7 @@ def _tree_run(spec: TreeSpec, course: BehaviourRun) -> TreeRun:
 
 def _check_implementation(implementation: Implementation | None, calls: Iterable[Call]) -> None:
     """Raise ``SceneError`` if the implementation cannot execute the behaviours in simulation."""
-    if implementation is None or implementation.kind == "python":
+    if implementation is None or implementation.is_users:
         return
     place = at(implementation.origin)
     if implementation.kind == "ros-action":

@@ -26,12 +26,13 @@ def design_points(design: Design, ranges: Sequence[Range], seed: int) -> Points:
 
     Raises ``StatisticsNotInstalled`` for the last two if SciPy is missing.
     """
-    names = tuple(one.variable.text for one in ranges)
+    names, units = tuple(one.variable.text for one in ranges), tuple(one.unit for one in ranges)
     if design.kind == GRID:
         shares = [number / (design.size - 1) for number in range(design.size)]
-        return Points(names, levels=tuple(tuple(value_at(one, share) for share in shares) for one in ranges))
+        levels = tuple(tuple(value_at(one, share) for share in shares) for one in ranges)
+        return Points(names, levels=levels, units=units)
     unit = _unit_points(design, len(ranges), seed)
-    return Points(names, tuple(tuple(map(value_at, ranges, row)) for row in unit))
+    return Points(names, tuple(tuple(map(value_at, ranges, row)) for row in unit), units=units)
 
 
 def _unit_points(design: Design, dimensions: int, seed: int) -> Sequence[Sequence[float]]:

@@ -77,15 +77,17 @@ class PointRuns:
         assert self.study.model is not None
         ranges = self.study.content.ranges
         texts, names = [one.variable.text for one in ranges], [_plain(one.variable.text) for one in ranges]
+        units = tuple(one.unit for one in ranges)
         found: dict[tuple[float, ...], list[ScenarioResult]] = {row: [] for row in rows}
         for cell in self.study.cells:
-            chosen = replace(cell.plan.selection, points=Points(tuple(texts), tuple(found)))
+            chosen = replace(cell.plan.selection, points=Points(tuple(texts), tuple(found), units=units))
             plan = Plan.of(self.study.model, chosen)
             seeded = tuple(replace(one, completed=common_seeds(names, seed)) for one in plan.requests)
             for one in self._results(replace(plan, requests=seeded)):
                 own = {plain_name(name): value for name, value in one.spec.values.items()}
                 for row, group in found.items():
-                    if all(own.get(name, value) == value for name, value in zip(names, row, strict=True)):
+                    wanted = zip(names, row, units, strict=True)
+                    if all(own.get(name, value) in (value, f"{value!r} {unit}") for name, value, unit in wanted):
                         group.append(one)
         return [found[row] for row in rows]
 

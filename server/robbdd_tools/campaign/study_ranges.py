@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.quantity_units import UNITS, split_quantity, units_of
 from robbdd_tools.catalog.settings import Setting, SettingError, setting_of
 from robbdd_tools.gherkin.scenario_outline import variable_name
-from robbdd_tools.gherkin.variations import cells_of
 from robbdd_tools.gherkin.where import variable_names
-from robbdd_tools.graph.acceptance_model import Fluent, Iri, Product, every_clause
+from robbdd_tools.graph.acceptance_model import Fluent, Iri, every_clause
 from robbdd_tools.syntax.study_content import GRID, MOST_POINTS
+from robbdd_tools.workbench.points import variable_cells
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Variant
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Variant
     from robbdd_tools.syntax.study_content import Range, StudyText
 
 Fault = tuple["Span", str]
@@ -64,7 +65,16 @@ def range_faults(models: Iterable[AcceptanceModel], ranges: Iterable[Range]) -> 
 
 def _faults_of(one: Range, model: AcceptanceModel, variant: Variant, variable: Iri) -> Iterator[Fault]:
     name = variable_name(variable)
-    other = next((cell for cell in _values(variant, variable) if isinstance(cell, str | tuple)), None)
+    cells = list(variable_cells(variant.variation, variant.variation.variables.index(variable)))
+    quantities = [UNITS[found[1]][0] for cell in cells if isinstance(cell, str) and (found := split_quantity(cell))]
+    if quantities and len(quantities) == len(cells):
+        if one.unit not in UNITS or UNITS[one.unit][0] not in quantities:
+            yield (
+                one.span,
+                f"the values of '{name}' are quantities: write both bounds with a unit, {_units(quantities)}",
+            )
+        return
+    other = next((cell for cell in cells if isinstance(cell, str | tuple)), None)
     if other is not None:
         shown = model.curie(other) if isinstance(other, Iri) else f'"{other}"'
         yield one.variable.span, f"the values of '{name}' are not numbers: the model gives it {shown}"
@@ -87,12 +97,9 @@ def _faults_of(one: Range, model: AcceptanceModel, variant: Variant, variable: I
                 yield one.span, str(error)
 
 
-def _values(variant: Variant, variable: Iri) -> Iterable[Cell]:
-    variation = variant.variation
-    place = variation.variables.index(variable)
-    if isinstance(variation, Product):
-        return cells_of(variation.choices[place])
-    return (row[place] for row in variation.rows)
+def _units(dimensions: Iterable[str]) -> str:
+    """Return the units of some dimensions in words."""
+    return " or ".join(unit for dimension in dict.fromkeys(dimensions) for unit in units_of(dimension))
 
 
 def _settings(variant: Variant, variable: Iri) -> Iterator[Setting]:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from robbdd_tools.base.quantity_units import split_quantity
+
 MOST_LEVELS = 10
 """A variable with more numeric values is grouped."""
 PARTS = 4
@@ -18,26 +20,39 @@ class Bins:
 
     low: float
     high: float
+    unit: str = ""
 
-    def word(self, value: float) -> str:
+    def word(self, value: Any) -> str:
         """Return the bounds of the part in which a value is."""
+        value, _ = _number(value) or (self.low, "")
         width = (self.high - self.low) / PARTS
         part = min(int((value - self.low) / width), PARTS - 1)
-        return f"{self.low + part * width:.4g} to {self.low + (part + 1) * width:.4g}"
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.low + part * width:.4g}{unit} to {self.low + (part + 1) * width:.4g}{unit}"
+
+
+def _number(value: Any) -> tuple[float, str] | None:
+    """Return a number, or a quantity, as its number and its unit; ``None`` for any other value."""
+    if isinstance(value, str):
+        found = split_quantity(value)
+        return None if found is None else (float(found[0]), found[1])
+    return (value, "") if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
 def bins_of(levels: Iterable[Mapping[str, Any]]) -> dict[str, Bins]:
     """Return the groups of each factor or variable that has more than ``MOST_LEVELS`` values, all of them numbers."""
-    numbers: dict[str, set[float]] = {}
-    others: set[str] = set()
+    found: dict[str, set[tuple[float, str] | None]] = {}
     for one in levels:
         for name, value in one.items():
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                numbers.setdefault(name, set()).add(value)
-            else:
-                others.add(name)
-    many = {name: found for name, found in numbers.items() if name not in others and len(found) > MOST_LEVELS}
-    return {name: Bins(min(found), max(found)) for name, found in many.items()}
+            found.setdefault(name, set()).add(_number(value))
+    bins: dict[str, Bins] = {}
+    for name, entries in found.items():
+        numbers = [entry for entry in entries if entry is not None]
+        units = {unit for _, unit in numbers}
+        if len(numbers) == len(entries) > MOST_LEVELS and len(units) == 1:
+            values = [value for value, _ in numbers]
+            bins[name] = Bins(min(values), max(values), units.pop())
+    return bins
 
 
 def in_order(words: Iterable[str], bins: Bins | None) -> list[str]:

@@ -26,7 +26,15 @@ class Origin:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-_KINDS = {"catalog": "catalog behaviour", "python": "Python code", "ros-action": "ROS action"}
+_KINDS = {
+    "catalog": "catalog behaviour",
+    "python": "Python code",
+    "process": "process",
+    "endpoint": "endpoint",
+    "ros-action": "ROS action",
+}
+USERS_KINDS = ("python", "process", "endpoint")
+"""The kinds of implementations that are code of users."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +73,11 @@ class ChosenScene:
 class Implementation:
     """The implementation of a behaviour.
 
-    - ``kind``: ``catalog``, ``python`` or ``ros-action``.
-    - ``name``: the name of the catalog behaviour, the Python code or the ROS action.
+    - ``kind``: ``catalog``, ``python``, ``process``, ``endpoint`` or ``ros-action``.
+    - ``name``: the name of the catalog behaviour, the Python code, the command line, the address or the ROS action.
     - ``origin``: its source position; ``None`` for a graph without source text.
     - ``replaced``: the implementation in the model, if a run executes a catalog behaviour instead.
+    - ``limit``: the time (s) within which a process or an endpoint answers; ``None`` if the model gives none.
     """
 
     iri: str
@@ -76,11 +85,17 @@ class Implementation:
     name: str
     origin: Origin | None = None
     replaced: str = ""
+    limit: float | None = None
 
     @property
     def words(self) -> str:
         """The kind and the name for messages, for example ``ROS action '/pick'``."""
         return f"{_KINDS[self.kind]} '{self.name}'"
+
+    @property
+    def is_users(self) -> bool:
+        """Whether code of users executes the behaviours: in this process, in another one, or on another machine."""
+        return self.kind in USERS_KINDS
 
     @property
     def substitution(self) -> Substitution | None:

@@ -22,6 +22,7 @@ from robbdd_tools.checks.emission import emission
 from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
 from robbdd_tools.checks.execution_fit import execution_fit
+from robbdd_tools.checks.external_system import external_system
 from robbdd_tools.checks.foreign_variable import foreign_variable
 from robbdd_tools.checks.joint_ends import joint_ends
 from robbdd_tools.checks.many_scenarios import many_scenarios
@@ -109,6 +110,7 @@ FILE_RULES = (
     no_room,
     no_scenario,
     not_simulated,
+    external_system,
     property_condition,
     published_form,
     python_source,

@@ -11,6 +11,8 @@ from robbdd_tools.checks.catalog_entry import CODE as CATALOG_ENTRY
 from robbdd_tools.checks.catalog_entry import known_entries, not_in_catalog
 from robbdd_tools.checks.execution_fit import CODE as EXECUTION_FIT
 from robbdd_tools.checks.execution_fit import not_executed, not_two
+from robbdd_tools.checks.external_system import CODE as EXTERNAL_SYSTEM
+from robbdd_tools.checks.external_system import system_fault
 from robbdd_tools.checks.model_file import CODE as MODEL_FILE
 from robbdd_tools.checks.model_file import missing_file
 from robbdd_tools.checks.not_simulated import CODE as NOT_SIMULATED
@@ -57,6 +59,10 @@ def _implementation(site: GraphSite, execution: Execution) -> Iterator[Diagnosti
             yield site.finding(one.iri, NOT_SIMULATED, message, Severity.INFORMATION)
         case "python":
             yield from _python(site, one.iri, one.name)
+        case "process" | "endpoint":
+            problem = system_fault(one.kind, one.name)
+            if problem:
+                yield site.finding(one.iri, EXTERNAL_SYSTEM, problem)
         case _:
             found = list(_entry(site, one.iri, one.name, "bddx"))
             yield from found or _misfit(site, execution, one)

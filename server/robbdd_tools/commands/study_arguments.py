@@ -21,6 +21,8 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         text = "agent processes at a time (default: as many as there are cores)"
         one.add_argument("--jobs", metavar="N", type=positive, help=text)
+        text = "connect to endpoints on this host; may be repeated (always: endpoint-hosts in your settings)"
+        one.add_argument("--allow-host", metavar="HOST", action="append", help=text)
         _allow_store(one)
         one.set_defaults(command=_run, resumed=one is resume)
     status = commands.add_parser("status", help="print the progress of a study, also while it is executed")

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.external_systems import command_words
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.model_includes import model_files
@@ -21,7 +22,7 @@ from robbdd_tools.protocol.manifest_file import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.executable import ModelSource, Origin, SceneInstance
+    from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, SceneInstance
     from robbdd_tools.protocol.specs import ExecutionSpec, Manifest
 
 
@@ -67,6 +68,8 @@ def _used(manifest: Manifest) -> Iterator[Path]:
             yield from _model_files(execution.scene, model)
         for name, origin in _code(execution):
             yield from _modules(name, _folder(origin, model))
+        if execution.implementation.kind == "process":
+            yield from _command_files(execution.implementation, model)
     chosen = {
         spec.chosen_instance.iri: (spec.chosen_instance, spec.model)
         for spec in manifest.scenarios
@@ -101,6 +104,17 @@ def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:
             yield policy.rule.name, None
         for observation in policy.observations:
             yield from ((name, None) for name in (observation.entity_mapper, observation.time_extractor) if name)
+
+
+def _command_files(implementation: Implementation, model: str) -> Iterator[Path]:
+    """Yield the files in the model's folder that the command of a process names, and what Python files import."""
+    folder = _folder(implementation.origin, model)
+    for word in command_words(implementation.name):
+        path = folder / word
+        if path.is_file():
+            yield path
+            if path.suffix == ".py" and path.parent == folder:
+                yield from _modules(path.stem, folder)
 
 
 def _folder(origin: Origin | None, model: str) -> Path:

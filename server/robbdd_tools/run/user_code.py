@@ -8,7 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.external_systems import ENDPOINT_HOSTS, endpoint_host
 from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
+from robbdd_tools.base.user_settings import user_file
+from robbdd_tools.catalog.executable import USERS_KINDS
+from robbdd_tools.graph.project_settings import user_setting
 from robbdd_tools.protocol.run_folder import OWN_STEPS
 
 if TYPE_CHECKING:
@@ -17,6 +21,10 @@ if TYPE_CHECKING:
 
 _FIX = "leave out --no-user-code if you trust this code, or run scenarios without it"
 _FIX_TRUST = "trust the workspace if you trust this code"
+
+
+HOSTS = "endpoint-hosts"
+HOSTS_FORM = 'a list of host names, such as ["localhost"]'
 
 
 class UserCodeRefused(RobbddError):
@@ -38,7 +46,7 @@ def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates:
     """
     reason = os.environ.get(NO_USER_CODE)
     if not reason:
-        return ""
+        return _hosts(manifest) if simulates and judges else ""
     fix = _FIX_TRUST if reason == UNTRUSTED else _FIX
     found = list(dict.fromkeys(_uses(manifest, folder, judges, simulates)))
     return f"{'; '.join(found)}: {fix}" if found else ""
@@ -74,5 +82,29 @@ def _evaluators(execution: ExecutionSpec, spec: ScenarioSpec) -> Iterator[str]:
 def _behaviours(spec: ScenarioSpec) -> Iterator[str]:
     own = None if spec.execution is None else spec.execution.implementation
     for code in (own, None if spec.tree is None else spec.tree.source):
-        if code is not None and code.kind == "python":
-            yield f"{code.origin or spec.model}: a behaviour is the Python code {code.name}"
+        if code is not None and code.kind in USERS_KINDS:
+            what = f"Python code {code.name}" if code.kind == "python" else f"{code.kind} '{code.name}'"
+            yield f"{code.origin or spec.model}: a behaviour is the {what}"
+
+
+def _hosts(manifest: Manifest) -> str:
+    """Return a message about endpoints on hosts that neither the user's settings nor the command line allow."""
+    used = {
+        spec.execution.implementation: spec.model
+        for spec in manifest.scenarios
+        if spec.execution is not None and spec.execution.implementation.kind == "endpoint"
+    }
+    if not used:
+        return ""
+    setting = user_setting(HOSTS, HOSTS_FORM)
+    if setting is not None and setting.faults:
+        return f"{setting.file}: {setting.faults[0].message}"
+    allowed = {*os.environ.get(ENDPOINT_HOSTS, "").split(","), *(setting.values if setting else ())}
+    for one, model in used.items():
+        host = endpoint_host(one.name)
+        if host not in allowed:
+            return (
+                f"{one.origin or model}: a behaviour is the endpoint '{one.name}', whose host is not allowed: give "
+                f'--allow-host {host}, or write {HOSTS} = ["{host}"] into {user_file()}'
+            )
+    return ""

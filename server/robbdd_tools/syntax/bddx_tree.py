@@ -28,12 +28,28 @@ class RosAction(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class ProcessSystem(Node):
+    """``process "command"``, with the time within which it answers."""
+
+    command: Text
+    limit: Number | None
+
+
+@dataclass(frozen=True, slots=True)
+class EndpointSystem(Node):
+    """``endpoint "ws://…"``, with the time within which it answers."""
+
+    address: Text
+    limit: Number | None
+
+
+@dataclass(frozen=True, slots=True)
 class Implementation(Node):
     """``bhv impl (ns=…) name { … }``."""
 
     namespace: NamespaceArgument
     name: Name
-    source: RosAction | PythonAttribute | CatalogEntry
+    source: RosAction | PythonAttribute | CatalogEntry | ProcessSystem | EndpointSystem
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 from robbdd_tools.gherkin.select import SelectionError
-from robbdd_tools.gherkin.variations import bindings, count
+from robbdd_tools.gherkin.variations import bindings, cells_of, count
 from robbdd_tools.gherkin.where import variable_names
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Product, Table, Variant
 from robbdd_tools.protocol.specs import ScenarioSpec, plain_name
@@ -25,11 +25,13 @@ class Points:
     - ``variables``: their names as in ``--where``: alone, with their template, or as a CURIE.
     - ``rows``: the values of one point each, in the order of the variables.
     - ``levels``: of a grid, the values of each variable, whose combinations are the points; then ``rows`` is empty.
+    - ``units``: the unit of each variable. Values that are quantities in the model (``0.25 m/s``) are so in the points.
     """
 
     variables: tuple[str, ...]
     rows: tuple[tuple[float, ...], ...] = ()
     levels: tuple[tuple[float, ...], ...] = ()
+    units: tuple[str, ...] = ()
 
 
 def with_points(model: AcceptanceModel, points: Points | None) -> AcceptanceModel:
@@ -56,9 +58,10 @@ def _at_points(model: AcceptanceModel, variant: Variant, points: Points) -> Vari
     if not columns:
         return variant
     variation = variant.variation
+    written = {place: _writer(variation, place, points.units, column) for place, column in columns.items()}
     if points.levels and isinstance(variation, Product):
         choices = tuple(
-            points.levels[columns[place]] if place in columns else found
+            tuple(map(written[place], points.levels[columns[place]])) if place in columns else found
             for place, found in enumerate(variation.choices)
         )
         return replace(variant, variation=replace(variation, choices=choices))
@@ -69,7 +72,12 @@ def _at_points(model: AcceptanceModel, variant: Variant, points: Points) -> Vari
         raise SelectionError(
             f"{name} has more than {MOST_SCENARIOS} scenarios at {len(rows)} points: take fewer points"
         )
-    return replace(variant, variation=Table(variation.variables, tuple(_rows(variation, others, columns, rows))))
+    return replace(
+        variant,
+        variation=Table(
+            variation.variables, tuple(_rows(variation, others, list(written.values()), list(columns), rows))
+        ),
+    )
 
 
 def _projected(points: Points, columns: Sequence[int]) -> Iterator[tuple[float, ...]]:
@@ -80,13 +88,34 @@ def _projected(points: Points, columns: Sequence[int]) -> Iterator[tuple[float, 
         yield tuple(row[column] for column in columns)
 
 
+def _writer(
+    variation: Product | Table, place: int, units: Sequence[str], column: int
+) -> Callable[[float], float | str]:
+    """Return a function that writes a value as the model writes those of the variable: with a unit, or without."""
+    cells = variable_cells(variation, place)
+    unit = units[column] if units and any(isinstance(cell, str) for cell in cells) else ""
+    return (lambda value: f"{value!r} {unit}") if unit else lambda value: value
+
+
+def variable_cells(variation: Product | Table, place: int) -> Iterable[Cell]:
+    """Return the values of a variable, which is given by its place among the variables of the variation."""
+    return (
+        cells_of(variation.choices[place]) if isinstance(variation, Product) else [row[place] for row in variation.rows]
+    )
+
+
 def _rows(
-    variation: Product | Table, others: Sequence[Iri], columns: Mapping[int, int], rows: Iterable[tuple[float, ...]]
+    variation: Product | Table,
+    others: Sequence[Iri],
+    writers: Sequence[Callable[[float], Cell]],
+    places: Sequence[int],
+    rows: Sequence[tuple[float, ...]],
 ) -> Iterator[tuple[Cell, ...]]:
     kept = dict.fromkeys(tuple(values[name] for name in others) for values in bindings(variation))
+    cells = [[write(value) for write, value in zip(writers, row, strict=True)] for row in rows]
     for former in kept:
-        for row in rows:
-            values, found = iter(former), dict(zip(columns, row, strict=True))
+        for row in cells:
+            values, found = iter(former), dict(zip(places, row, strict=True))
             yield tuple(found[place] if place in found else next(values) for place in range(len(variation.variables)))
 
 

@@ -35,6 +35,21 @@ class AgentWorld:
         return self._simulation.time
 
     @property
+    def seed(self) -> int:
+        """The seed of the execution."""
+        return self._simulation.world.seed
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """The names of all objects."""
+        return tuple(self._simulation.world.cast.objects)
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """The names of the workspaces that an object carries."""
+        return tuple(self._simulation.world.cast.regions)
+
+    @property
     def joints(self) -> FloatArray:
         """Positions of the arm's joints, rad."""
         return self._simulation.joint_positions(self._robot).copy()

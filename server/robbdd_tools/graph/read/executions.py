@@ -62,6 +62,11 @@ def _implementation(records: Records, node: Iri) -> Implementation:
         return Implementation(node, "python", python_name(records, node))
     if records.is_a(node, "rbw:RosAction"):
         return Implementation(node, "ros-action", records.text(node, "rbw:ros-name"))
+    limit = number(records, node, "rbw:answer-seconds")
+    if records.is_a(node, "rbw:ExternalProcess"):
+        return Implementation(node, "process", records.text(node, "rbw:command"), limit=limit)
+    if records.is_a(node, "rbw:ExternalEndpoint"):
+        return Implementation(node, "endpoint", records.text(node, "rbw:address"), limit=limit)
     name = records.text(node, "rbw:catalog-name")
     if not name:
         raise Incomplete(f"{node} does not name its implementation")

@@ -79,6 +79,14 @@ def _add_implementation(frame: Frame, root: tree.Implementation) -> None:
             _say(frame, node, "rbw:ros-name", action.value, action)
         case tree.PythonAttribute() as source:
             add_python(frame, node, source)
+        case tree.ProcessSystem(command=command, limit=limit):
+            frame.sink.add_types(node, ["rbw:ExternalProcess"], frame.at(root.name))
+            _say(frame, node, "rbw:command", command.value, command)
+            _number(frame, node, "rbw:answer-seconds", limit)
+        case tree.EndpointSystem(address=address, limit=limit):
+            frame.sink.add_types(node, ["rbw:ExternalEndpoint"], frame.at(root.name))
+            _say(frame, node, "rbw:address", address.value, address)
+            _number(frame, node, "rbw:answer-seconds", limit)
 
 
 def _add_provider(frame: Frame, root: tree.Provider) -> None:
