@@ -228,3 +228,16 @@ def test_a_folder_that_exists_is_not_written(models: Path, tmp_path: Path) -> No
     done = robbdd(folder, "export", "1", "--ros2", "-o", str(tmp_path))
     assert done.returncode == 2
     assert "exists: name a new folder" in done.stderr
+
+
+def test_the_clock_of_a_source_moves_when_a_clause_is_judged(models: Path, tmp_path: Path) -> None:
+    """The cube reaches the bin at 7 s, and the behaviour ends at 7.05 s. A clock that is 0.99 s behind changes that."""
+    silent = [one for one in drive() if one.topic != "/events"]
+    table = tmp_path / "events.csv"
+    table.write_text("time,event\n1,pick-start\n3,pick-end\n6,place-start\n7.05,evt-place-end\n", encoding="utf-8")
+    found, _ = judged(models, tmp_path, silent, "--events", str(table))
+    assert verdicts(found)["at-goal"] == "holds"
+    found, _ = judged(models, tmp_path, silent, "--events", str(table), "--clock", "/tf=-0.99")
+    assert verdicts(found)["at-goal"] == "violated"
+    wrong = robbdd(models, "judge", str(tmp_path / "drive"), "pickplace.bdd", *ONE, "--clock", "/tf=soon")
+    assert "'/tf=soon' must be TOPIC=SECONDS, for example /camera/pose=0.12" in wrong.stderr

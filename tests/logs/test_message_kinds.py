@@ -19,10 +19,11 @@ from logs.bags import (
     models,
     pose,
     poses,
+    text,
     transform,
     write,
 )
-from robbdd_tools.logs.log_contents import LogContents
+from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.open_log import read_log
 
 KINDS = ["sqlite", "old", "mcap", "ros1"]
@@ -214,3 +215,22 @@ def test_diagnostics_report_changed_levels_and_messages(kind: str, tmp_path: Pat
         ("/diagnostics/gripper", "gripper ok", 4.0),
         ("/diagnostics/gripper", "pick_end", 4.0),
     ]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_clock_of_a_topic_that_is_ahead_is_moved_back(kind: str, tmp_path: Path) -> None:
+    messages = [pose("/seen/cup", (time, 0, 0), stamp=time) for time in (1.0, 2.0, 3.0)]
+    messages += [transform("arm", (0, 0, 0), stamp=time) for time in (0.5, 2.5)]
+    path = write(tmp_path / ("drive.bag" if kind == "ros1" else "drive"), messages, kind)
+    found = read_log(path, clocks={"/seen/cup": 0.25})
+    assert times(found, "seen/cup") == [0.25, 1.25, 2.25]
+    assert times(found, "arm") == [0.0, 2.0]
+    assert times(read_log(path), "seen/cup") == [0.5, 1.5, 2.5]
+
+
+def test_a_clock_of_no_topic_or_without_headers_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path / "drive", [pose("/cup", (0, 0, 0), stamp=1.0), text("pick-start", 1.0)])
+    with pytest.raises(UnreadableLog, match=r"there is no topic '/mug' with headers; the log has /cup$"):
+        read_log(path, clocks={"/mug": 1.0})
+    with pytest.raises(UnreadableLog, match=r"'/events' \(std_msgs/msg/String\) has the time of its reception"):
+        read_log(path, clocks={"/events": 1.0})

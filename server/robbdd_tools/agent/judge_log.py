@@ -94,7 +94,7 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
 
 
 def _contents(request: LogRequest) -> LogContents:
-    contents = read_log(Path(request.path), request.columns)
+    contents = read_log(Path(request.path), request.columns, request.clocks)
     if not request.annotations:
         return contents
     texts = sorted((*contents.texts, *read_events(Path(request.annotations))), key=lambda stamp: stamp.time)

@@ -29,6 +29,8 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--column", metavar="NAME=TITLE", type=_pair, action="append", help=text)
     text = "a signal that the agent holds something: 'ur10=/vacuum', 'ur10/cube1=joint finger above 5 mm'; repeats"
     log.add_argument("--grip", metavar="AGENT[/OBJECT]=SIGNAL", type=_grip, action="append", help=text)
+    text = "by how many seconds the clock of the headers on a topic of a ROS bag is ahead; repeats"
+    log.add_argument("--clock", metavar="TOPIC=SECONDS", type=_clock, action="append", help=text)
     log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
     text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
     log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
@@ -49,6 +51,7 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
 
     frames: dict[str, str] = dict(options.frame or ())
     errors: dict[str, float] = dict(options.uncertainty or ())
+    clocks: dict[str, float] = dict(options.clock or ())
     names = LogNames(
         frames,
         options.world or "",
@@ -61,6 +64,7 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
         dict(options.joint or ()),
         dict(options.column or ()),
         tuple(options.grip or ()),
+        clocks,
     )
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)
@@ -72,6 +76,17 @@ def _pair(text: str) -> tuple[str, str]:
     if not (name and separator and value):
         raise argparse.ArgumentTypeError(f"'{text}' must be NAME=VALUE, for example cube1=camera/cube")
     return name, value
+
+
+def _clock(text: str) -> tuple[str, float]:
+    topic, written = _pair(text)
+    try:
+        seconds = float(written)
+    except ValueError:
+        seconds = float("inf")
+    if not abs(seconds) < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' must be TOPIC=SECONDS, for example /camera/pose=0.12")
+    return topic, seconds
 
 
 def _grip(text: str) -> str:

@@ -19,22 +19,27 @@ def is_log(path: Path) -> bool:
     return (path / METADATA).is_file() or (path.suffix.lower() in SUFFIXES and path.is_file())
 
 
-def read_log(path: Path, columns: Mapping[str, str] | None = None) -> LogContents:
-    """Return the contents of a log. ``columns`` maps names of a table's columns to titles in the file.
+def read_log(
+    path: Path, columns: Mapping[str, str] | None = None, clocks: Mapping[str, float] | None = None
+) -> LogContents:
+    """Return the contents of a log. ``columns`` maps names of a table's columns to titles in the file, and
+    ``clocks`` topics of a ROS bag to the time (s) by which the clock of their headers is ahead.
 
     Raises ``UnreadableLog``.
     """
     if path.is_dir():
-        return _checked(path, read_ros_bag(path))
+        return _checked(path, read_ros_bag(path, clocks))
     match path.suffix.lower():
         case ".csv":
             found = read_table(path, columns)
         case ".mcap" if "json" in encodings(path):
             found = read_foxglove(path)
         case ".bag" | ".db3" | ".mcap":
-            found = read_ros_bag(path)
+            return _checked(path, read_ros_bag(path, clocks))
         case _:
             raise UnreadableLog(f"{path} is no log: name a rosbag2 folder, or a file {', '.join(SUFFIXES)}")
+    if clocks:
+        raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for ROS bags only")
     return _checked(path, found)
 
 

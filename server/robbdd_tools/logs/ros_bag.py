@@ -7,20 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.ros_definitions import known_types
-from robbdd_tools.logs.ros_messages import READERS, RosContents
+from robbdd_tools.logs.ros_messages import HEADERLESS, READERS, RosContents
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
 NO_ROSBAGS = "reading ROS bags needs the extra 'logs': pip install 'robbdd-tools[logs]'"
 MAX_LISTED = 8
 
 
-def read_ros_bag(path: Path) -> LogContents:
+def read_ros_bag(path: Path, clocks: Mapping[str, float] | None = None) -> LogContents:
     """Return the contents of a bag.
 
     Poses are stamped by the headers of their messages. Messages without a header are stamped by their reception.
     If the two clocks differ, the time of reception is moved by the median difference, and a remark says so.
+    ``clocks`` maps topics to the time (s) by which the clock of their headers is ahead; it is subtracted.
     Raises ``UnreadableLog``.
     """
     try:
@@ -37,9 +38,11 @@ def read_ros_bag(path: Path) -> LogContents:
             defined = reader.typestore.fielddefs
             wanted = [one for one in reader.connections if one.msgtype in READERS and one.msgtype in defined]
             contents.remarks += _not_read(reader.connections, defined)
+            ahead = dict(_clocks(clocks or {}, {one.topic: str(one.msgtype) for one in wanted}))
             for connection, received, raw in reader.messages(connections=wanted) if wanted else ():
                 topic = f": '{connection.topic}' ({connection.msgtype})"
                 message = reader.deserialize(raw, connection.msgtype)
+                contents.ahead = ahead.get(connection.topic, 0)
                 READERS[connection.msgtype](contents, connection.topic, received, message)
                 topic = ""
         return contents.finish()
@@ -59,3 +62,17 @@ def _not_read(connections: Iterable[Any], defined: Collection[str]) -> list[str]
         f"'{topic}' is not read, because the bag does not define {kind}: record with storage 'mcap'"
         for topic, kind in sorted(missing.items())
     ]
+
+
+def _clocks(stated: Mapping[str, float], known: Mapping[str, str]) -> Iterator[tuple[str, int]]:
+    """Yield each topic with the time (ns) by which its headers are ahead. Raises ``UnreadableLog``."""
+    for topic, seconds in stated.items():
+        if topic not in known:
+            stamped = ", ".join(sorted(one for one, kind in known.items() if kind not in HEADERLESS)) or "none"
+            raise UnreadableLog(f"there is no topic '{topic}' with headers; the log has {stamped}")
+        if known[topic] in HEADERLESS:
+            kind = known[topic]
+            raise UnreadableLog(
+                f"'{topic}' ({kind}) has the time of its reception: only the clock of headers can be moved"
+            )
+        yield topic, round(seconds * 1e9)

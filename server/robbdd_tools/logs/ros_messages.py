@@ -34,6 +34,8 @@ class RosContents:
         self.goals = ActionGoals()
         self._diagnostics = Diagnostics()
         self.remarks: list[str] = []
+        self.ahead = 0
+        """By how much (ns) the clock of the headers of the next messages is ahead."""
         self._received = TrackBuilder()
         """Poses without headers, by the time of reception."""
         self.joints = JointBuilder()
@@ -47,7 +49,7 @@ class RosContents:
 
     def _transform(self, topic: str, received: int, one: Any) -> None:
         static = topic.rpartition("/")[2] == STATIC
-        stamp = _stamp(one.header.stamp)
+        stamp = self._stamp(one.header.stamp)
         if not static:
             self.offsets.append(received - stamp)
         where, turn = one.transform.translation, one.transform.rotation
@@ -94,7 +96,7 @@ class RosContents:
             # Some detectors fill in only the header of the list.
             own = one.header if one.header.frame_id else header
             pose = _detected_pose(one)
-            self.lists.seen(topic, frame, _stamp(own.stamp), (pose.position.x, pose.position.y, pose.position.z))
+            self.lists.seen(topic, frame, self._stamp(own.stamp), (pose.position.x, pose.position.y, pose.position.z))
             self._stamped(frame, received, own, pose)
 
     def _name(self, topic: str, one: Any) -> str:
@@ -127,7 +129,7 @@ class RosContents:
 
     def joint_states(self, topic: str, received: int, message: Any) -> None:
         """Take the states of joints. Their time is that of reception if the header has none."""
-        stamp = _stamp(message.header.stamp)
+        stamp = self._stamp(message.header.stamp)
         if stamp:
             self.offsets.append(received - stamp)
         builder = self.joints if stamp else self._received_joints
@@ -135,7 +137,7 @@ class RosContents:
 
     def wrench(self, topic: str, received: int, message: Any) -> None:
         """Take the size of a force. Its time is that of the header or, without one, of reception."""
-        stamp, force = _stamp(message.header.stamp), message.wrench.force
+        stamp, force = self._stamp(message.header.stamp), message.wrench.force
         if stamp:
             self.offsets.append(received - stamp)
         self._wrenches.add(topic, stamp or received, [FORCE], [math.hypot(force.x, force.y, force.z)])
@@ -190,9 +192,14 @@ class RosContents:
         return offset
 
     def _stamped(self, name: str, received: int, header: Any, pose: Any) -> None:
-        stamp = _stamp(header.stamp)
+        stamp = self._stamp(header.stamp)
         self.offsets.append(received - stamp)
         _add(self.builder, name, header.frame_id, stamp, pose)
+
+    def _stamp(self, stamp: Any) -> int:
+        """Return the corrected time of a header; 0 if it has none."""
+        found = _stamp(stamp)
+        return found - self.ahead if found else 0
 
 
 READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
@@ -219,6 +226,24 @@ READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
     "actionlib_msgs/msg/GoalStatusArray": RosContents.goal_states,
 }
 """Types of messages → how they are read."""
+
+
+HEADERLESS = frozenset(
+    {
+        "gazebo_msgs/msg/ModelStates",
+        "gazebo_msgs/msg/LinkStates",
+        "gazebo_msgs/msg/ContactsState",
+        "ros_gz_interfaces/msg/Contacts",
+        "std_msgs/msg/String",
+        "std_msgs/msg/Bool",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        "bdd_ros2_interfaces/msg/Trinary",
+        "bdd_ros2_interfaces/msg/TrinaryStamped",
+        "action_msgs/msg/GoalStatusArray",
+        "actionlib_msgs/msg/GoalStatusArray",
+    }
+)
+"""Types whose messages have the time of their reception."""
 
 
 def _add(builder: TrackBuilder, frame: str, parent: str, stamp: int, pose: Any) -> None:

@@ -25,6 +25,7 @@ class LogRequest:
     - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
     - ``columns``: maps the name of a column of a table to its title in the file.
     - ``grips``: signals that say when an agent holds something, as ``protocol/grip_signals`` reads them.
+    - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -40,3 +41,4 @@ class LogRequest:
     joints: Mapping[str, str] = field(default_factory=dict[str, str])
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
     grips: tuple[str, ...] = ()
+    clocks: Mapping[str, float] = field(default_factory=dict[str, float])

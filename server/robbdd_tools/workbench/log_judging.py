@@ -54,6 +54,7 @@ class LogNames:
     joints: Mapping[str, str] = field(default_factory=dict[str, str])
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
     grips: tuple[str, ...] = ()
+    clocks: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,7 @@ def judge_log(
     joints: Mapping[str, str] | None = None,
     columns: Mapping[str, str] | None = None,
     grips: Sequence[str] = (),
+    clocks: Mapping[str, float] | None = None,
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -103,6 +105,7 @@ def judge_log(
     - ``joints``: maps a joint of a model, or ``agent/joint``, to its name in the log.
     - ``columns``: maps the name of a column of a table (``time``, ``frame``, ``x`` …) to its title in the file.
     - ``grips``: signals that say when an agent holds something: ``("ur10=/vacuum", "ur10=joint finger above 5 mm")``.
+    - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
     Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
@@ -121,6 +124,7 @@ def judge_log(
         dict(joints or {}),
         dict(columns or {}),
         tuple(grips),
+        dict(clocks or {}),
     )
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
@@ -167,6 +171,7 @@ class LogJudgement:
             dict(names.joints),
             dict(names.columns),
             names.grips,
+            dict(names.clocks),
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)
