@@ -37,7 +37,7 @@ async function choose(
   if (tests.length < 2) {
     return { scenario };
   }
-  const cut = count !== null && count > tests.length ? `: the first ${tests.length} of ${count.toLocaleString("en")}` : "";
+  const cut = count !== null && count > tests.length ? ` of the first ${tests.length} of ${count.toLocaleString("en")}` : "";
   const title = `Debug: which scenario${cut}?`;
   const picked = await vscode.window.showQuickPick(tests.map(listed), { title });
   return picked && { scenario, ...(picked.variation === undefined ? {} : { variation: picked.variation }) };

@@ -59,6 +59,7 @@ test("the paused scene is shown on request and follows each pause", async () => 
   openWindow();
   await command("robbdd.showPausedScene");
   assert.equal(editor.panels.length, 0);
+  assert.match(editor.messages.join(), /^No simulation is paused/);
   const asked: string[] = [];
   const customRequest = (request: string) => {
     asked.push(request);
@@ -110,12 +111,33 @@ test("the lens of a scenario debugs the execution that the user chooses by its v
   await command("robbdd.debugScenario", { ...LENS, count: 2 });
   assert.deepEqual(editor.debugged, [{ ...launch, variation: 2 }]);
   assert.deepEqual(asked, [{ uri: FILE, variant: "t:fetch", most: 1000 }]);
+  const words = editor.lists[0]?.map(({ label, description }) => `${label} (${description})`);
+  assert.deepEqual(words, ["part = cube1 (scenario 1)", "part = cube2 (scenario 2)"]);
   // Without a choice, nothing is debugged.
   await command("robbdd.debugScenario", { ...LENS, count: 2 });
   assert.equal(editor.debugged.length, 1);
   // The only scenario needs no choice.
   await command("robbdd.debugScenario", { ...LENS, count: 1 });
   assert.deepEqual([editor.debugged.at(-1), asked.length, editor.lists.length], [launch, 2, 2]);
+  // Of thousands, the title says how many are listed.
+  await command("robbdd.debugScenario", { ...LENS, count: 5000 });
+  assert.deepEqual(editor.titles, [
+    "Debug: which scenario?", "Debug: which scenario?", "Debug: which scenario of the first 2 of 5,000?",
+  ]);
+});
+
+test("an execution with one listed scenario, and a model without a lens, are debugged without a choice", async () => {
+  openWindow();
+  LanguageClient.answers.set("robbdd/tests", () => ({ problem: null, files: [FILE], tests: [scenario(1)] }));
+  const launch = { type: "robbdd", request: "launch", name: "RobBDD", program: "/cell/fetch.bdd" };
+  await command("robbdd.debugScenario", { ...LENS, count: null });
+  await command("robbdd.debugScenario", { uri: FILE });
+  assert.deepEqual(editor.debugged, [{ ...launch, scenario: "t:fetch" }, launch]);
+  assert.deepEqual(editor.lists, []);
+  // What is no list of tests starts nothing.
+  LanguageClient.answers.set("robbdd/tests", () => undefined);
+  await command("robbdd.debugScenario", { ...LENS, count: null });
+  assert.equal(editor.debugged.length, 2);
 });
 
 test("so is a run of selected tests", async () => {

@@ -135,6 +135,8 @@ class Editor {
   readonly choices: string[] = [];
   /** What the user types into the boxes that are shown, one after the other; refused where a box refuses it. */
   readonly typed: string[] = [];
+  /** The titles of the lists that were shown. */
+  readonly titles: string[] = [];
   /** The lists that were shown. */
   readonly lists: (readonly { readonly label: string; readonly description?: string; readonly detail?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
@@ -187,6 +189,7 @@ class Editor {
     this.choices.length = 0;
     this.typed.length = 0;
     this.lists.length = 0;
+    this.titles.length = 0;
     this.openRuns = 0;
     this.texts.length = 0;
     this.tasks.length = 0;
@@ -283,9 +286,10 @@ export const window = {
   showOpenDialog: nothing,
   showQuickPick: (
     list: readonly { readonly label: string; readonly picked?: boolean }[],
-    options?: { readonly canPickMany?: boolean },
+    options?: { readonly canPickMany?: boolean; readonly title?: string },
   ) => {
     editor.lists.push(list);
+    editor.titles.push(options?.title ?? "");
     if (options?.canPickMany === true) {
       return Promise.resolve(list.filter(({ picked }) => picked === true));
     }
