@@ -69,7 +69,8 @@ def test_hover_and_completion_know_emissions() -> None:
     told = shown(TEXT.replace("emits pick-end", "emits pick-$0end"))
     assert told == "When the behaviour emits its own event `pick-end`, the event `in-hand` of the model occurs."
     assert labels(TEXT.replace("emits pick-end", "emits $0pick-end")) == [
-        *("pick-start", "pick-end", "place-start", "place-end")
+        *("close-start", "close-end", "hand-over-start", "laid-down", "hand-over-end", "open-start", "open-end"),
+        *("pick-start", "pick-end", "place-start", "place-end", "push-start", "push-end"),
     ]
     offered = labels(TEXT.replace("emits pick-end as <in-hand>", "emits pick-end as <$0>"))
     assert "in-hand" in offered
