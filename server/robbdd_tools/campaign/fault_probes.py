@@ -114,7 +114,7 @@ def with_probes(spec: ScenarioSpec) -> ScenarioSpec:
 
 
 def separating(probe: Probe, before: Sequence[ClauseJudged], after: Sequence[ClauseJudged]) -> str | None:
-    """Return how a probe tells executions with a fault (``after``) from those without; ``None`` if it does not."""
+    """Return how a probe separates executions with a fault (``after``) from those without; ``None`` if it does not."""
     if not before or not after or any(one.verdict == Outcome.UNKNOWN for one in (*before, *after)):
         return None
     if not probe.limit:
