@@ -55,8 +55,9 @@ class Cell:
         async with asyncio.timeout(PATIENCE):
             while True:
                 found = self.client.diagnostics.get(uri, [])
-                told = [one.message for one in found if str(one.code) in ("python-source", "model-name", "model-file")]
-                if len(told) == len(messages) and all(map(str.startswith, sorted(told), sorted(messages))):
+                named = [one for one in found if str(one.code) in ("python-source", "model-name", "model-file")]
+                reported = [one.message for one in named]
+                if len(reported) == len(messages) and all(map(str.startswith, sorted(reported), sorted(messages))):
                     return
                 await asyncio.sleep(0.02)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -87,12 +88,12 @@ class Document:
 
 def edited_part(old: str, new: str) -> tuple[int, int]:
     """Return the start and the end of the smallest part of ``old`` that must be replaced to obtain ``new``."""
-    start = _common(old, new)
-    return start, len(old) - _common(old[start:][::-1], new[start:][::-1])
+    start = common_prefix(old, new)
+    return start, len(old) - common_prefix(old[start:][::-1], new[start:][::-1])
 
 
-def _common(one: str, other: str) -> int:
-    """Return the length of the longest common prefix of two texts. It is found by bisection."""
+def common_prefix(one: Sequence[object], other: Sequence[object]) -> int:
+    """Return the length of the longest common prefix of two texts or tuples. It is found by bisection."""
     low, high = 0, min(len(one), len(other))
     while low < high:
         middle = (low + high + 1) // 2

@@ -1,7 +1,7 @@
 """Clauses that are measured besides those of the model, to propose those that would notice a fault.
 
-A probe is judged like any other clause, in executions without and with the fault. It is proposed only if it tells all
-of these executions apart.
+A probe is judged like any other clause, in executions without and with the fault. It is proposed only if its verdicts
+separate the ones from the others.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from robbdd_tools.base.document import common_prefix
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.file_caches import FileCache
 
@@ -47,9 +48,9 @@ class Tally(Generic[Fact]):
         return counts
 
     def _updated(self, known: _Counted[Fact], parts: tuple[Declaration, ...]) -> Counts[Fact]:
-        start = _common(known.parts, parts)
+        start = common_prefix(known.parts, parts)
         old, new = known.parts[start:], parts[start:]
-        same = _common(old[::-1], new[::-1])
+        same = common_prefix(old[::-1], new[::-1])
         gone, fresh = old[: len(old) - same], new[: len(new) - same]
         change = Counter(fact for part in fresh for fact in self._facts(part))
         change.subtract(fact for part in gone for fact in self._facts(part))
@@ -76,15 +77,3 @@ def _parts(file: FileIndex) -> tuple[Declaration, ...]:
         else:
             found.append(declaration)
     return tuple(found)
-
-
-def _common(one: tuple[Entry, ...], other: tuple[Entry, ...]) -> int:
-    """Return the length of the longest common prefix of two sequences. It is found by bisection."""
-    low, high = 0, min(len(one), len(other))
-    while low < high:
-        middle = (low + high + 1) // 2
-        if one[low:middle] == other[low:middle]:
-            low = middle
-        else:
-            high = middle - 1
-    return low
