@@ -4,11 +4,12 @@ import re
 
 import pytest
 
-from kit import FOLDER, MODEL, fixture
+from kit import FOLDER, MODEL, SCENE, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.executors import EXECUTORS
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS, Setting
+from robbdd_tools.checks.setting import may_have
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.name_completion import Completion
@@ -134,6 +135,71 @@ def test_clauses_are_offered_after_an_unparenthesised_and_with_its_parenthesis(f
         assert [(edit.span, edit.text) for edit in one.edits] == [(Span(start, start), "(")], one.label
     chosen = applied(text.replace("$0", ""), found["name: holds(…)"])
     assert chosen.count("(") == chosen.count(")") + 1
+
+
+@pytest.mark.parametrize("word", ["and", "or"])
+def test_a_clause_may_be_continued_without_its_parenthesis(word: str) -> None:
+    text = edited(IN_TRAY, f"{IN_TRAY}\n        $0")
+    start = text.index(IN_TRAY)
+    (found,) = [one for one in at(text) if one.label == word]
+    assert [(edit.span, edit.text) for edit in found.edits] == [(Span(start, start), "(")]
+    held = next(one for one in at(edited(IN_TRAY, f"( {IN_TRAY}\n        $0")) if one.label == word)
+    assert held.edits == ()
+
+
+def test_nothing_is_continued_before_the_first_clause() -> None:
+    assert {"and", "or"}.isdisjoint(one.label for one in at(edited(IN_TRAY, "$0")))
+
+
+@pytest.mark.parametrize("before", ["", f"{IN_TRAY}\n        and ", f"{IN_TRAY}\n        ", "( "])
+def test_a_clause_may_be_negated_without_its_parenthesis(before: str) -> None:
+    text = edited(IN_TRAY, f"{before}$0")
+    (found,) = [one for one in at(text) if one.label == "not"]
+    assert re.search(r"\(\s*not\b", applied(text.replace("$0", ""), found))
+    begun = edited(IN_TRAY, f"{before}not $0")
+    start = begun.index("$0")
+    entries = {one.label: one for one in at(begun)}
+    assert {"name: holds(…)", "holds", "part"} <= set(entries)
+    opened = [(edit.span.start - start, edit.text) for edit in entries["holds"].edits]
+    assert ((-len("not "), "(") in opened) is (before != "( ")
+
+
+def test_a_fix_puts_a_negated_clause_into_parentheses() -> None:
+    text = edited(IN_TRAY, f"not {IN_TRAY}")
+    case = fixture(text)
+    (error,) = [one for one in fast_diagnostics(case.snapshot, case.uri) if one.code == "syntax"]
+    assert error.message == "'not' and its clause need parentheses: '( not name: holds(…) )'"
+    ((edit,),) = [fix.edits for fix in error.fixes]
+    assert text[: edit.span.start] + edit.text + text[edit.span.end :] == edited(IN_TRAY, f"(not {IN_TRAY})")
+
+
+def test_an_empty_section_above_hides_no_proposals() -> None:
+    given = "on-bench: holds(<part> is located at <goal>, before <pick-start>)"
+    text = edited(IN_TRAY, "$0")
+    assert {one.label for one in at(text.replace(given, ""))} == {one.label for one in at(text)}
+
+
+@pytest.mark.parametrize(("target", "kind"), [("robot", "agent"), ("part", "object"), ("arms.panda", "agent")])
+def test_the_settings_that_fit_come_first(target: str, kind: str) -> None:
+    ranks = {one.label: one.rank for one in at(edited(IN_TRAY, f"new: holds(<{target}> has config $0"))}
+    assert ranks.keys() == SETTINGS.keys()
+    assert {name for name, rank in ranks.items() if rank == 0} == {one for one in SETTINGS if may_have(kind, None, one)}
+    assert 1 in ranks.values()
+
+
+def test_variables_of_elements_come_last_where_a_quantity_is_written() -> None:
+    text = edited(IN_TRAY, "new: holds(<robot> moves slower than $0").replace(
+        "    var part\n", "    var part\n    var limit\n"
+    )
+    ranks = {one.label: one.rank for one in at(text) if one.kind == "variable"}
+    assert ranks == {"limit": 0, "goal": 1, "part": 1, "robot": 1}
+
+
+def test_a_scene_offers_sets_after_the_words_that_also_begin_a_declaration() -> None:
+    for word, name in (("obj set", "parts"), ("agn set", "arms"), ("ws set", "places")):
+        text = SCENE.replace("obj set <parts> ", f"\n    {word} $0\n    ")
+        assert name in {one.label for one in at(text, "main.scene")}
+        assert at(SCENE.replace("scene (ns=env)", f"{word} $0\nscene (ns=env)"), "main.scene") == []
 
 
 def test_only_the_clauses_of_one_chain_are_joined() -> None:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.parsed import Expectation
 
 _STARTS = frozenset({"import", "ns"})
+_CLAUSE = frozenset({"(", "<", "holds"})
+"""The grammar accepts a clause where it accepts these."""
 
 
 def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | None = None) -> list[Completion]:
@@ -56,7 +58,7 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
     place = place_after(language, cursor.before)
     if units or place.expected is None:
         return units
-    found = [*_words(names, language, place), *names.of(language, place)]
+    found = [*_words(names, language, place), *_connectives(names, language, place), *names.of(language, place)]
     opening = tuple(
         Edit(uri, Span(start, start), "(") for start in (cursor.span.start - distance for distance in place.opened)
     )
@@ -77,6 +79,25 @@ def _words(names: Names, language: str, place: Place) -> Iterator[Completion]:
         if _may_begin(snippet.plain, expected) and is_accepted(language, place.before, snippet.plain):
             yield Completion(snippet.label, "snippet", "form", snippet.body, span, whole)
     yield from names.literals(literal_choices(language, place, names.facts()))
+
+
+def _connectives(names: Names, language: str, place: Place) -> Iterator[Completion]:
+    """Yield 'and' and 'or' after a clause without parentheses, and 'not' before one, with the missing parenthesis."""
+    assert place.expected is not None
+    before, span, uri = names.cursor.before, names.cursor.span, names.file.document.uri
+    if not place.expected.literals >= _CLAUSE:
+        return
+    for word in ("and", "or", "not") if place.before.rstrip().endswith((")", ">", "}", '"', "'")) else ("not",):
+        if word in place.expected.literals:
+            continue
+        joined = place_after(language, f"{before}{word} ")
+        for distance in joined.opened[-1:] if joined.expected is not None else ():
+            start = span.start + len(word) + 1 - distance
+            if start == span.start:
+                yield Completion(word, "keyword", "", f"({word}", span, names.whole)
+            elif len(joined.opened) > len(place.opened):
+                opening = Edit(uri, Span(start, start), "(")
+                yield Completion(word, "keyword", "", word, span, names.whole, edits=(opening,))
 
 
 def _may_begin(text: str, expected: Expectation) -> bool:

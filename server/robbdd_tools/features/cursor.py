@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _WORD = re.compile(r"[\w\-.]*\Z")
 _QUOTED = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?")
+_MORE = re.compile(r"[^\w\s]|\n")
+"""Text after the first words of a declaration."""
 _VARIANT = re.compile(r"(?<![\w\-.<])Scenario\s+(?!Template\b)([^\W\d][\w\-]*)\s*\{")
 _BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]*)\s*\{")
 """Start of a block with names inside a kinematic tree or a scene instance."""
@@ -41,13 +43,36 @@ class Cursor:
 
 def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
     """Return the context of an absolute offset in a file."""
-    placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
+    placed = _enclosing(analysis, offset)
     text = _before(analysis, placed, offset)
     match = _WORD.search(text, text.rfind("\n") + 1)
     # A dot after a reference starts a new word.
     word = match[0].lstrip(".") if match else ""
     before = text[: len(text) - len(word)]
     return Cursor(placed, before, word, Span(offset - len(word), offset), _scopes(placed, before), _quoted(text))
+
+
+def _enclosing(analysis: FileAnalysis, offset: int) -> PlacedDeclaration | None:
+    """Return the declaration at an offset.
+
+    In a scene, ``obj set`` without a name begins a declaration for the splitter. If it is indented and the braces
+    before it are open, it is a part of the declaration before it.
+    """
+    end = bisect_right(analysis.declarations, offset, key=lambda entry: entry.offset)
+    found = analysis.declarations[max(0, end - 2) : end]
+    if len(found) == 2:
+        text = analysis.document.text
+        begun = text[found[1].offset : offset]
+        indented = text[text.rfind("\n", 0, found[1].offset) + 1 : found[1].offset]
+        if indented and indented.isspace() and not _MORE.search(begun) and _is_open(found[0].declaration.text):
+            return found[0]
+    return found[-1] if found else None
+
+
+def _is_open(text: str) -> bool:
+    """Return whether a text has an opening brace without a closing one."""
+    code = _QUOTED.sub("", text)
+    return code.count("{") > code.count("}")
 
 
 def _before(analysis: FileAnalysis, placed: PlacedDeclaration | None, offset: int) -> str:

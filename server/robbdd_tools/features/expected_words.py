@@ -19,12 +19,16 @@ MAX_BROKEN_LINES = 50
 """Maximum number of unparsable lines skipped before a cursor."""
 
 
+_MAX_HEADS = 2
+"""Maximum number of section heads above a line that may belong to empty sections."""
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """A place in a text.
 
     - ``before``: the text that was parsed. Lines that cannot be parsed are blanked, and clauses joined by 'and' or 'or'
-      have their parentheses.
+      or negated by 'not' have their parentheses.
     - ``expected``: what the grammar accepts after it; ``None`` if the text could not be parsed.
     - ``opened``: the distances to the end of the text of the parentheses that are missing and still open there.
     """
@@ -52,12 +56,37 @@ def place_after(language: str, before: str) -> Place:
             continue
         if not before[parsed.offset :].strip():
             return Place(before, parsed.expected, tuple(opened))
-        start = before.rfind("\n", 0, parsed.offset) + 1
-        end = before.find("\n", parsed.offset)
-        if end < 0 or not before[start:end].strip():
+        blanked = _without_faulty_line(language, before, parsed.offset)
+        if blanked is None:
             break
-        before = before[:start] + " " * (end - start) + before[end:]
+        before = blanked
     return Place(before, None)
+
+
+def _without_faulty_line(language: str, before: str, offset: int) -> str | None:
+    """Return a text with the line blanked where the parser stopped, or ``None`` if the cursor is in that line.
+
+    The head of an empty section above, such as ``Given:``, is blanked instead if the parser then gets further.
+    """
+    start, end = before.rfind("\n", 0, offset) + 1, before.find("\n", offset)
+    if end < 0 or not before[start:end].strip():
+        return None
+    choices = [_blanked(before, start, end)]
+    above = before[:start].rstrip()
+    while above.endswith(":") and len(choices) <= _MAX_HEADS:
+        head = above.rfind("\n") + 1
+        choices.append(_blanked(before, head, len(above)))
+        above = before[:head].rstrip()
+    return max(choices, key=lambda text: _parsed_length(language, text)) if len(choices) > 1 else choices[0]
+
+
+def _blanked(text: str, start: int, end: int) -> str:
+    return text[:start] + " " * (end - start) + text[end:]
+
+
+def _parsed_length(language: str, text: str) -> int:
+    found = parse_chunk(language, text)
+    return len(text) if isinstance(found, Parsed) else found.offset
 
 
 def keyword_phrases(language: str, before: str, expected: Expectation) -> list[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
+from robbdd_tools.checks.setting import may_have
 from robbdd_tools.features.element_properties import CONDITION, name_choices, value_choices
 from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
@@ -28,7 +29,7 @@ from robbdd_tools.features.value_types import (
 )
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
-from robbdd_tools.names.uses import ANYTHING, Kinds
+from robbdd_tools.names.uses import ANYTHING, ELEMENTS, Kinds
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
@@ -116,11 +117,15 @@ class Names:
 
     def misfitting_phrases(self) -> frozenset[str]:
         """Return the beginnings of phrases that do not fit the type of the variable before the cursor."""
-        name = reference_before(self.cursor.before)
-        if name is None or self.cursor.placed is None:
-            return frozenset()
-        kinds = kinds_in_text(self._other_lines()).get(name) or self._kinds_of(name)
+        kinds = self._reference_kinds(self.cursor.before)
         return frozenset(words for words, fitting in leading_kinds().items() if not fitting & kinds)
+
+    def _reference_kinds(self, before: str) -> Kinds:
+        """Return the kinds of the element or variable that a text ends with, if it does."""
+        name = reference_before(before)
+        if name is None or self.cursor.placed is None:
+            return ANYTHING
+        return kinds_in_text(self._other_lines()).get(name) or self._kinds_of(name)
 
     def _other_lines(self) -> str:
         """Return the text of the declaration at the cursor without the cursor's line."""
@@ -130,11 +135,15 @@ class Names:
         return text[: text.rfind("\n", 0, place) + 1] + (text[end:] if end >= 0 else "")
 
     def _kinds_of(self, name: str) -> Kinds:
-        """Return the kinds of a variable, by its values if no phrase narrows its type."""
+        """Return the kinds of an element, or of a variable by its values if no phrase narrows its type."""
         scope = self.snapshot.scope(self.file.document.uri)
-        visible = scope.visible(ROLE_KINDS["Variable"], self.cursor.scopes)
-        kinds = variable_type(self.snapshot, scope.define(*visible[name])).kinds if name in visible else ANYTHING
-        return kinds or ANYTHING
+        visible = scope.visible(ROLE_KINDS["Term"], self.cursor.scopes)
+        if name not in visible:
+            return ANYTHING
+        definition = scope.define(*visible[name])
+        if definition.kind not in ROLE_KINDS["Variable"]:
+            return frozenset(kind for kind in ELEMENTS if may_be(definition.kind, frozenset({kind}))) or ANYTHING
+        return variable_type(self.snapshot, definition).kinds or ANYTHING
 
     def properties(self) -> Iterator[Completion]:
         """Yield the properties that elements of the model have."""
@@ -153,9 +162,12 @@ class Names:
     def settings(self) -> Iterator[Completion]:
         """Yield the configurations that ``has config`` can set."""
         if _CONFIGURED.search(self.cursor.before):
+            configured = _CONFIGURED.sub("", self.cursor.before)
+            kinds = self._reference_kinds(configured) & ELEMENTS or ELEMENTS
             for name, setting in SETTINGS.items():
                 detail = f"of {setting.target}" + (f", {setting.unit}" if setting.unit else "")
-                yield Completion(name, "setting", detail, name, self.cursor.span, self.whole)
+                misfits = not any(may_have(kind, None, name) for kind in kinds)
+                yield Completion(name, "setting", detail, name, self.cursor.span, self.whole, rank=int(misfits))
 
     def moments(self) -> Iterator[Completion]:
         """Yield the events of the catalog's behaviours, for ``emits``."""
@@ -231,6 +243,8 @@ def _misfits(cursor: Cursor) -> frozenset[str]:
     The type of a variable is inferred from the other phrases that use it.
     """
     wanted = slot_wanted(cursor.before)
+    if wanted == ANYTHING:
+        wanted = facts_in_clause(cursor.before).kinds
     if cursor.placed is None or wanted == ANYTHING:
         return frozenset()
     return frozenset(

@@ -1,4 +1,4 @@
-"""Find clauses joined by 'and' or 'or' without the parentheses that the language demands."""
+"""Find clauses joined by 'and' or 'or', or negated by 'not', without the parentheses that the language demands."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ MAX_STARTS = 24
 """Maximum number of places where the first of the joined clauses may start; a clause has fewer words."""
 _SPACE = r"(?:\s|//[^\n]*\n)"
 _WORD = re.compile(rf"(?<=[)>}}\"']){_SPACE}*(?<![\w\-.])(?P<word>and|or){_SPACE}*\Z")
+_NOT = re.compile(rf"(?<![\w\-.<])(?P<word>not){_SPACE}*\Z")
 _TOKEN = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|[\w\-.]+|\S")
 _OPENING, _CLOSING = frozenset("({"), frozenset(")}")
 _MAX_LENGTH = 4000
@@ -27,8 +28,8 @@ _MAX_LENGTH = 4000
 class Joined:
     """Clauses that lack parentheses around them.
 
-    - ``start``: where the first clause starts.
-    - ``word``: the first 'and' or 'or' between them.
+    - ``start``: where the first clause starts, or the 'not' before the only one.
+    - ``word``: the first 'and' or 'or' between them, or the 'not'.
     - ``end``: the end of the last clause; ``None`` if the text ends before a clause is complete.
     """
 
@@ -45,7 +46,14 @@ def joining_word(text: str, offset: int) -> Span | None:
 
 def joined_clauses(language: str, text: str, stopped: Rejected) -> Joined | None:
     """Return the clauses around the place where the parser stopped, or ``None`` if it stopped for another reason."""
-    word = joining_word(text, stopped.offset) if ":" in stopped.expected.literals else None
+    if ":" not in stopped.expected.literals:
+        return None
+    negation = _NOT.search(text, max(0, stopped.offset - _MAX_LENGTH), stopped.offset)
+    # After '(not' a clause may follow; without the parenthesis, 'not' is read as a clause's name.
+    if negation is not None and "(" not in stopped.expected.literals:
+        start, end = negation.span("word")
+        return Joined(start, Span(start, end), _end(language, text, start))
+    word = joining_word(text, stopped.offset)
     if word is None:
         return None
     for start in islice(_starts(text, word.start), MAX_STARTS):
