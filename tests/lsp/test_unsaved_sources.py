@@ -18,6 +18,7 @@ from lsp_kit import PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri
 
 SYNCHRONIZED = (types.TEXT_DOCUMENT_DID_OPEN, types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
+FOLLOWED = ("no-evaluator", "unusable-model", "scene-unchecked")
 
 
 class Cell:
@@ -58,6 +59,16 @@ class Cell:
                 named = [one for one in found if str(one.code) in ("python-source", "model-name", "model-file")]
                 reported = [one.message for one in named]
                 if len(reported) == len(messages) and all(map(str.startswith, sorted(reported), sorted(messages))):
+                    return
+                await asyncio.sleep(0.02)
+
+    async def until_reported(self, name: str, *codes: str) -> None:
+        """Wait until exactly these findings about scenes and texts are published for a file."""
+        uri = path_to_uri(self.folder / name)
+        async with asyncio.timeout(PATIENCE):
+            while True:
+                found = [str(one.code) for one in self.client.diagnostics.get(uri, [])]
+                if uri in self.client.diagnostics and [one for one in found if one in FOLLOWED] == list(codes):
                     return
                 await asyncio.sleep(0.02)
 
@@ -117,6 +128,49 @@ async def test_the_unsaved_text_of_an_arm_counts_and_leads_to_its_place(cell: Ce
     [place] = found
     assert isinstance(place, types.Location)
     assert (place.uri, place.range.start) == (arm.uri, arm.position("tip"))
+
+
+async def test_the_scene_is_drawn_and_checked_with_the_unsaved_texts_of_its_models(cell: Cell) -> None:
+    (cell.folder / "hand.xml").write_text("<mujoco><worldbody/></mujoco>\n", encoding="utf-8")
+    main = cell.folder / "five.xml"
+    text = main.read_text(encoding="utf-8").replace("<worldbody>", '<include file="hand.xml"/><worldbody>', 1)
+    main.write_text(text, encoding="utf-8")
+    scene, hand = cell.open("cell.scenex"), cell.open("hand.xml")
+
+    async def drawn() -> Any:
+        (found,) = plain(await cell.client.protocol.send_request_async("robbdd/scene", {"uri": scene.uri}))["scenes"]
+        return [one["reason"] for one in found["faults"]], len(found["shapes"])
+
+    faults, shapes = await drawn()
+    assert faults == []
+    hand.change("<worldbody/>", '<worldbody><body name="more"><geom size="0.1"/></body></worldbody>')
+    assert await drawn() == ([], shapes + 1)
+    hand.change('size="0.1"', 'size="-1"')
+    ((reason,), _) = await drawn()
+    assert "size" in reason
+    await cell.until_reported("cell.scenex", "unusable-model")
+    hand.change('size="-1"', 'size="0.1"')
+    await cell.until_reported("cell.scenex")
+
+
+async def test_unsaved_steps_judge_the_texts_of_a_model_and_of_its_templates(cell: Cell) -> None:
+    steps = cell.folder / "steps"
+    steps.mkdir()
+    code = "from behave import then\n\n\n@then('the bench is {state} {time}')\ndef clean(context, state, time): ...\n"
+    (steps / "more_steps.py").write_text(code, encoding="utf-8")
+    template = (cell.folder / "tidy.bdd").read_text(encoding="utf-8")
+    (cell.folder / "more.bdd").write_text('import "tidy.bdd"\n', encoding="utf-8")
+    model = cell.open("tidy.bdd")
+    cell.open("more.bdd")
+    mark = "    Then:\n"
+    assert mark in template
+    model.change(mark, f'{mark}        "the bench is clean" after <evt-end>\n')
+    await cell.until_reported("tidy.bdd")
+    own = cell.open("steps/more_steps.py")
+    own.change("the bench", "the lathe")
+    await cell.until_reported("tidy.bdd", "no-evaluator")
+    own.change("the lathe", "the bench")
+    await cell.until_reported("tidy.bdd")
 
 
 async def test_unopened_models_are_checked_with_unsaved_code(cell: Cell) -> None:

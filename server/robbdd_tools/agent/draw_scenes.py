@@ -1,7 +1,7 @@
 """``python -m robbdd_tools.agent.draw_scenes``: draw scene instances as plain data.
 
-The process reads a list of scene instances as JSON from standard input, and writes the shapes and faults of each one to
-standard output. It neither steps a world nor executes users' code.
+The process reads scene instances and unsaved texts of their files as JSON from standard input, and writes the shapes
+and faults of each one to standard output. It neither steps a world nor executes users' code.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """``python -m robbdd_tools.agent.find_faults``: find the faults of scene instances that every run would have.
 
-The process reads a list of scene instances as JSON from standard input, and writes a list of faults as JSON to standard
-output. It neither steps a world nor executes users' code.
+The process reads scene instances and unsaved texts of their files as JSON from standard input, and writes a list of
+faults as JSON to standard output. It neither steps a world nor executes users' code.
 """
 
 from __future__ import annotations
@@ -10,12 +10,14 @@ import json
 import os
 import sys
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.limits import SCENE_MEMORY, SCENE_SECONDS
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import limit_memory, limit_processor_time
+from robbdd_tools.base.source_texts import use_unsaved
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 
@@ -51,7 +53,9 @@ def answer_instances(answer: Callable[[list[SceneInstance]], list[dict[str, Any]
     # Nothing is rendered: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     with os.fdopen(requests, encoding="utf-8") as stream:
-        instances = [from_plain(SceneInstance, one) for one in json.load(stream)]
+        request = json.load(stream)
+    use_unsaved({Path(path): text for path, text in request["sources"].items()})
+    instances = [from_plain(SceneInstance, one) for one in request["instances"]]
     found = answer(instances)
     with os.fdopen(answers, "w", encoding="utf-8") as stream:
         json.dump(found, stream)

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
 from robbdd_tools.base.files import Unreadable, UnreadableFile, load_bytes, unreadable
+from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.base.srdf import srdf_files
 
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 """Attributes of MJCF and URDF that name folders to search for files."""
 
 
-def model_files(path: Path) -> Iterator[Path]:
+Read = Callable[[Path], str | bytes]
+"""Returns the XML of a file; raises ``UnreadableFile``."""
+
+
+def model_files(path: Path, read: Read = load_bytes) -> Iterator[Path]:
     """Yield a model file, the existing files that it names and its SRDF files, each file once and of whatever kind."""
     seen: dict[Path, None] = {}
     waiting = [path]
@@ -24,7 +29,7 @@ def model_files(path: Path) -> Iterator[Path]:
             continue
         seen[current] = None
         yield current
-        waiting += reversed(list(_named(current)))
+        waiting += reversed(list(_named(current, read)))
     yield from (one for one in srdf_files(path) if one not in seen)
 
 
@@ -33,13 +38,13 @@ def unusable(path: Path) -> Unreadable | None:
 
     It cannot if one of the files that the model names is not a regular file.
     """
-    named = [path, *model_files(path)]
+    named = [path, *model_files(path, source_xml)]
     return next((problem for file in named if (problem := unreadable(file)) is not None), None)
 
 
-def _named(path: Path) -> Iterator[Path]:
+def _named(path: Path, read: Read) -> Iterator[Path]:
     try:
-        root = ElementTree.fromstring(load_bytes(path))
+        root = ElementTree.fromstring(read(path))
     except (ElementTree.ParseError, LookupError, ValueError, UnreadableFile):
         return
     places = [path.parent, *(path.parent / element.get(name, "") for element in root.iter() for name in FOLDERS)]

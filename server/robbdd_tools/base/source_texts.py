@@ -1,4 +1,4 @@
-"""The texts of files that models name: Python code, and descriptions of robots (MJCF, URDF).
+"""The texts of files that models name: Python code, steps, and descriptions of robots (MJCF, URDF).
 
 An editor's unsaved text replaces the file's, for analysis only: runs read the files.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 
-from robbdd_tools.base.files import FileState, UnreadableFile, file_state, load_text, path_to_uri, too_large
+from robbdd_tools.base.files import FileState, UnreadableFile, file_state, load_bytes, load_text, path_to_uri, too_large
 from robbdd_tools.base.limits import SOURCE_SIZE
 
 
@@ -58,6 +58,21 @@ def load_source(path: Path) -> str:
     if refused is not None:
         raise UnreadableFile(refused)
     return unsaved[1]
+
+
+def unsaved_source(path: Path) -> str | None:
+    """Return the unsaved text of a file, or ``None``."""
+    unsaved = _EDITOR.at(path)
+    return None if unsaved is None else unsaved[1]
+
+
+def source_xml(path: Path) -> str | bytes:
+    """Return the current XML of a file: its unsaved text, or its bytes, whose encoding the XML declares.
+
+    Raises ``UnreadableFile`` and ``OSError``.
+    """
+    unsaved = unsaved_source(path)
+    return load_bytes(path) if unsaved is None else unsaved
 
 
 def _key(path: Path) -> str:

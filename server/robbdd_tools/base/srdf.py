@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from robbdd_tools.base.files import UnreadableFile, load_bytes
+from robbdd_tools.base.files import UnreadableFile
+from robbdd_tools.base.source_texts import source_xml
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -71,7 +72,7 @@ def srdf_files(urdf: Path) -> tuple[Path, ...]:
 def read_srdf(path: Path) -> Srdf:
     """Return the contents of an SRDF file. Raises ``UnreadableSrdf``."""
     try:
-        root = ElementTree.fromstring(load_bytes(path))
+        root = ElementTree.fromstring(source_xml(path))
         return Srdf(
             path,
             {group.get("name", ""): _group(group) for group in root.findall("group")},
@@ -86,7 +87,7 @@ def read_srdf(path: Path) -> Srdf:
 def _robot_of(path: Path) -> str:
     """Return the name of the robot in a URDF or SRDF file, ``""`` if it has none."""
     try:
-        root = ElementTree.fromstring(load_bytes(path))
+        root = ElementTree.fromstring(source_xml(path))
     except (ElementTree.ParseError, LookupError, ValueError, UnreadableFile):
         return ""
     return root.get("name", "") if root.tag == "robot" else ""

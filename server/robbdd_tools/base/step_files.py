@@ -7,7 +7,8 @@ import re
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import UnreadableFile, file_state, load_text, path_to_uri
+from robbdd_tools.base.files import UnreadableFile
+from robbdd_tools.base.source_texts import load_source, source_state
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,14 +51,14 @@ def may_define(model: Path, sentence: str) -> bool:
     A parameter of a step matches any text. A step with another matcher than ``parse`` may match any sentence, and so
     may the steps of an unreadable file.
     """
-    state = file_state(path_to_uri(steps_file(model)))
+    state = source_state(steps_file(model))
     return state is not None and any(pattern.fullmatch(sentence) for pattern in _patterns(state))
 
 
 @lru_cache(maxsize=16)
 def _patterns(state: FileState) -> tuple[re.Pattern[str], ...]:
     try:
-        source = load_text(state.path)
+        source = load_source(state.path)
         sentences = {sentence for _, sentence in defined_steps(source)[0]}
     except (UnreadableFile, OSError, SyntaxError, ValueError):
         return (re.compile(".*"),)

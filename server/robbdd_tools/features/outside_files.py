@@ -1,4 +1,4 @@
-"""The files that are not models and that a model names: Python modules, and descriptions of robots."""
+"""The files that are not models and that a model uses: Python modules, its own steps, and descriptions of robots."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.model_parts import model_parts
 from robbdd_tools.base.python_modules import find_module, source_file
+from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.model_file import model_path
 from robbdd_tools.checks.python_source import code_names
 from robbdd_tools.names.index import language_of
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
 
-NAMING = ("bddx", "scenex")
+NAMING = ("bdd", "bddx", "scenex")
 """Languages that can name such files."""
 
 
@@ -33,6 +34,8 @@ def outside_uris(snapshot: Snapshot, uri: str) -> frozenset[str]:
     file = snapshot.file(uri) if own is not None and language_of(uri) in NAMING else None
     if own is None or file is None:
         return frozenset()
+    if language_of(uri) == "bdd":
+        return frozenset({path_to_uri(steps_file(own))})
     return frozenset(
         path_to_uri(path) for placed in file.declarations for path in _named(placed.declaration, own.parent)
     )

@@ -14,7 +14,8 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.source_texts import unsaved_source
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.features.clause_results import clause_diagnostics
@@ -141,6 +142,10 @@ async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
     target = steps_file(path)
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
+        unsaved = unsaved_source(target)
+        if unsaved is not None and unsaved != await asyncio.to_thread(read_text, target):
+            ls.warn(f"{target} has unsaved changes: save it first")
+            return []
         await asyncio.to_thread(add_steps, free_patterns(plan.model), target, path.name)
     except SyntaxError as error:
         ls.warn(f"{target}:{error.lineno or 1}: {error.msg}: fix the file first")

@@ -31,7 +31,7 @@ class Request:
     - ``surveyed``: true for an unopened file. All its findings are wanted, with the texts that contain them.
     - ``importers``: the files that import it, open or not. Without them, declarations that only they use would be
       reported as unused.
-    - ``sources``: the unsaved texts of other files, such as Python code. Only the check of an unopened file needs them.
+    - ``sources``: the unsaved texts of other files, such as Python code and descriptions of robots.
     """
 
     revision: int
@@ -90,6 +90,7 @@ class Edited:
 
     - ``store``: the folder of the model's stored runs.
     - ``executions``: the shown executions: for each run, their numbers.
+    - ``sources``: the unsaved texts of other files, such as steps.
     """
 
     revision: int
@@ -97,6 +98,7 @@ class Edited:
     texts: Mapping[str, tuple[int, str]]
     store: str
     executions: Mapping[int, tuple[int, ...]]
+    sources: Mapping[Path, str] = field(default_factory=dict[Path, str])
 
 
 @dataclass(frozen=True, slots=True)

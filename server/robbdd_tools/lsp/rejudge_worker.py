@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.memory import collect_rarely, collect_recent
+from robbdd_tools.base.source_texts import use_unsaved
 from robbdd_tools.features.run_verdicts import Digests, Judgement, RejudgedExecution, digests_of
 from robbdd_tools.lsp.framing import Edited, Execution, Rejudged, frame
 from robbdd_tools.lsp.judged_scenarios import judgement, refused_judgement
@@ -76,6 +77,7 @@ class Worker:
 
     def _answers(self, edited: Edited) -> Iterator[Rejudged]:
         self.project.replace(edited.texts)
+        use_unsaved(edited.sources)
         self.project.load(edited.uri)
         snapshot = self.project.snapshot()
         file = DraftFile(snapshot, edited.uri, edited.uri)

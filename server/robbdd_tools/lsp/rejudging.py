@@ -130,7 +130,7 @@ class Rejudging:
     ) -> Edited:
         store = self._server.stores.of(model)
         numbers = {run: tuple(indices) for run, indices in executions.items()}
-        return Edited(revision, model, texts, str(store.folder), numbers)
+        return Edited(revision, model, texts, str(store.folder), numbers, self._server.sources.texts())
 
     async def _send(self, orders: Sequence[Edited]) -> None:
         async with self._starting:

@@ -234,7 +234,8 @@ class RobbddServer(LanguageServer):
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return a request to validate a file, and the texts to which its answer will refer."""
         texts = {name: snapshot.document(name).text for name in snapshot.reachability.walk(uri)}
-        return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
+        shapes, sources = self.settings.shapes(uri), self.sources.texts()
+        return Request(next(self._orders), uri, self.project.texts(), shapes, sources=sources), texts
 
     def show_results(self, uris: Sequence[str]) -> None:
         """Show new results of clauses in some files soon. Frequent updates are combined."""

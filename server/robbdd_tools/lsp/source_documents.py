@@ -1,4 +1,4 @@
-"""Follow the unsaved texts of files that models name: Python code, and descriptions of robots (MJCF, URDF).
+"""Follow the unsaved texts of files that models use: Python code, steps, and descriptions of robots (MJCF, URDF).
 
 A client that can register for documents dynamically is asked for exactly the files that a model of the workspace names,
 so that no other file of the user is sent. Any client may open such a file at the server.
@@ -74,13 +74,19 @@ class SourceDocuments:
         models = [model for model, named in self._named.items() if not named.isdisjoint(changed)]
         if models:
             self._server.survey.schedule(changed)
-            await self._server.show_diagnostics(models)
-            # A file may include others since.
+            # Steps also judge the clauses of imported templates.
+            concerned = await self._server.analyse(lambda snapshot: _with_imports(snapshot, models))
+            for model in filter(self._server.is_open, concerned):
+                await self._server.publish(model)
+            if self._server.pulls:
+                await self._server.show_diagnostics(concerned)
+            # A file may include others since, or exist only now.
             await self._follow(models)
+            self._server.spawn(self._subscribe())
 
     def follow_soon(self, model: str) -> None:
         """Find the files that an edited model names, when nothing else is to be done."""
-        if language_of(model) in NAMING:
+        if language_of(model) in NAMING and not (language_of(model) == "bdd" and model in self._named):
             self._server.spawn(self._follow([model]))
 
     async def _follow(self, models: Iterable[str]) -> None:
@@ -116,6 +122,11 @@ class SourceDocuments:
                         types.Unregistration(_id(method, uri), method) for uri in sorted(gone) for method in _METHODS
                     ]
                     await self._server.client_unregister_capability_async(types.UnregistrationParams(ended))
+
+
+def _with_imports(snapshot: Snapshot, models: Iterable[str]) -> list[str]:
+    """Return files and those that they import."""
+    return list(dict.fromkeys(other for model in models for other in snapshot.reachability.walk(model)))
 
 
 def _registration(method: str, uri: str) -> types.Registration:

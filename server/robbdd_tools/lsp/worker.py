@@ -93,6 +93,7 @@ class Worker:
     def answer(self, request: Request) -> Answer | None:
         """Return the findings about a file, or ``None`` if the work was abandoned because of a newer request."""
         self.project.replace(request.texts)
+        use_unsaved(request.sources)
         if request.surveyed:
             return self._survey(request)
         validation = self.validations.setdefault(request.uri, Validation())
@@ -118,7 +119,6 @@ class Worker:
 
     def _survey(self, request: Request) -> Answer:
         """Return all findings about an unopened file and the files that form a cycle of imports with it."""
-        use_unsaved(request.sources)
         for uri in (request.uri, *request.importers):
             self.project.load(uri)
         snapshot = self.project.snapshot()

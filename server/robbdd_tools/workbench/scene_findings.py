@@ -17,12 +17,14 @@ from robbdd_tools.base.limits import SCENE_SECONDS
 from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import describe_exit
+from robbdd_tools.base.source_texts import source_state, source_xml, unsaved_source
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
 from robbdd_tools.workbench.model_entries import entry_span
 
 if TYPE_CHECKING:
+    from robbdd_tools.base.files import FileState
     from robbdd_tools.catalog.executable import ModelSource, SceneInstance
     from robbdd_tools.names.project import Snapshot
 
@@ -82,8 +84,9 @@ def instances_of(snapshot: Snapshot, uri: str) -> list[SceneInstance]:
 
 
 def request_for(instances: list[SceneInstance]) -> str:
-    """Return the request for a process that sets up scene instances."""
-    return json.dumps([asdict(_with_short_names(one)) for one in instances])
+    """Return the request for a process that sets up scene instances, with the unsaved texts of their files."""
+    texts = {str(path): text for path in _all_files(instances) if (text := unsaved_source(path)) is not None}
+    return json.dumps({"instances": [asdict(_with_short_names(one)) for one in instances], "sources": texts})
 
 
 def _with_short_names(instance: SceneInstance) -> SceneInstance:
@@ -99,18 +102,20 @@ def _with_short_names(instance: SceneInstance) -> SceneInstance:
     return replace(instance, elements=tuple(elements), frictions=tuple(frictions))
 
 
-def file_states(instances: list[SceneInstance]) -> Iterator[tuple[str, int, int]]:
-    """Yield the path, size and time of the last change of each file that the models name."""
+def file_states(instances: list[SceneInstance]) -> Iterator[FileState | None]:
+    """Yield the state of the current text of each file that the models name."""
+    return map(source_state, _all_files(instances))
+
+
+def _all_files(instances: list[SceneInstance]) -> Iterator[Path]:
     for instance in instances:
         models = [*instance.models, *(model for one in instance.elements for model in one.models)]
-        for path in dict.fromkeys(path for model in models for path in _files(model)):
-            state = path.stat()
-            yield str(path), state.st_size, state.st_mtime_ns
+        yield from dict.fromkeys(path for model in models for path in _files(model))
 
 
 def _files(model: ModelSource) -> Iterator[Path]:
     if model.kind == "file" and model.origin is not None:
-        yield from model_files(Path(model.origin.file).parent / Path(model.name).expanduser())
+        yield from model_files(Path(model.origin.file).parent / Path(model.name).expanduser(), source_xml)
 
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:

@@ -17,6 +17,7 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
+from robbdd_tools.world.mjcf_files import read_mjcf
 from robbdd_tools.world.moving_parts import (
     handle_of,
     is_free,
@@ -74,7 +75,7 @@ def load(source: ModelSource) -> Any:
 
 @cache
 def _read(path: str) -> Any:
-    return read_urdf(Path(path)) if is_urdf(Path(path)) else mujoco.MjSpec.from_file(path)
+    return read_urdf(Path(path)) if is_urdf(Path(path)) else read_mjcf(Path(path))
 
 
 def _read_made(path: Path) -> Any:

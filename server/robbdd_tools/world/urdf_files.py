@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.model_paths import mesh_places
+from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
 
 READABLE = (".stl", ".obj", ".msh")
@@ -24,7 +24,7 @@ HIDDEN = 3
 def is_urdf(path: Path) -> bool:
     """Return whether a file is a URDF file or a xacro file, by its root element."""
     try:
-        return ElementTree.fromstring(load_bytes(path)).tag == "robot"
+        return ElementTree.fromstring(source_xml(path)).tag == "robot"
     except ElementTree.ParseError:
         return False
 
@@ -35,7 +35,7 @@ def read_urdf(path: Path) -> Any:
     Visual shapes are kept, except for meshes that are missing or that the engine cannot read. Each of the collision
     meshes must be there.
     """
-    root = ElementTree.fromstring(load_bytes(path))
+    root = ElementTree.fromstring(source_xml(path))
     if path.suffix == ".xacro" or any("xacro" in element.tag for element in root.iter()):
         name = path.name.removesuffix(".xacro")
         wanted = f"expand it ('xacro {path.name} > {Path(name).stem}.urdf') and name the result"
@@ -59,7 +59,7 @@ def read_urdf(path: Path) -> Any:
 def speeds(path: Path) -> dict[str, float]:
     """Return the speed limit (rad/s, m/s) of each joint of a URDF file; nothing for another file."""
     try:
-        root = ElementTree.fromstring(load_bytes(path))
+        root = ElementTree.fromstring(source_xml(path))
     except ElementTree.ParseError:
         return {}
     # Elements 'joint' of transmissions have the names of joints, too, but no limits.
@@ -74,7 +74,7 @@ def impossible_inertias(path: Path) -> Iterator[str]:
     The engine replaces the three principal moments of such a link by their mean.
     """
     try:
-        root = ElementTree.fromstring(load_bytes(path))
+        root = ElementTree.fromstring(source_xml(path))
     except ElementTree.ParseError:
         return
     for link in root.iter("link") if root.tag == "robot" else ():

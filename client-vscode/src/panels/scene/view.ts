@@ -9,14 +9,21 @@ import type { ToScene } from "./messages";
 
 /** Milliseconds without an edit before a scene is drawn again. */
 const PAUSE = 300;
+/** Endings of files that describe robots and objects. */
+const DESCRIPTION = /\.(xml|mjcf|urdf|srdf)$/i;
 
 export class SceneView extends FilePanels<ScenePanel> {
   constructor(server: Server, extension: vscode.Uri) {
     super(server, "robbdd.scene", "Scene", (view, uri) => new ScenePanel(view, extension, server, uri));
     this.subscriptions.push(
-      // Models are read from the disk.
+      // Meshes are read from the disk; descriptions of robots as they are edited.
       vscode.workspace.onDidSaveTextDocument(() => {
         this.refreshSoon();
+      }),
+      vscode.workspace.onDidChangeTextDocument(({ document }) => {
+        if (DESCRIPTION.test(document.uri.path)) {
+          this.refreshSoon();
+        }
       }),
     );
   }
