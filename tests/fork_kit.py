@@ -28,10 +28,14 @@ _FOLDER = Path(tempfile.gettempdir(), f"robbdd-forks-{uuid4().hex[:12]}")
 _ADDRESS = str(_FOLDER / "socket")
 # The code of a fork runs here, so that no function of the server is among its callers.
 _SERVE = """import sys
-from fork_server.serve import code_of_fork
+from fork_server.serve import code_of_fork, end_fork
 code = code_of_fork(sys.argv[1])
 if code is not None:
-    exec(code, {"__name__": "__main__"})
+    try:
+        exec(code, {"__name__": "__main__"})
+    except SystemExit as end:
+        end_fork(end.code)
+    end_fork(None)
 """
 
 

@@ -58,6 +58,28 @@ def test_an_error_is_shown_with_its_traceback() -> None:
     assert done.stderr.endswith("ZeroDivisionError: division by zero\n")
 
 
+@pytest.mark.parametrize(
+    "code",
+    [
+        "raise SystemExit('a reason')",
+        "raise SystemExit(259)",
+        "import sys; sys.stdout.write('no line end'); sys.stderr.write('nor here')",
+        "import threading, time; threading.Thread(target=lambda: (time.sleep(0.05), print('waited for'))).start()",
+        "import atexit; atexit.register(print, 'last'); print('first')",
+    ],
+)
+def test_it_ends_as_an_interpreter_does(code: str) -> None:
+    fork, interpreter = (
+        subprocess.run(command, capture_output=True, text=True)
+        for command in (forked(code), [sys.executable, "-c", code])
+    )
+    assert (fork.returncode, fork.stdout, fork.stderr) == (
+        interpreter.returncode,
+        interpreter.stdout,
+        interpreter.stderr,
+    )
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_are_forwarded(number: signal.Signals) -> None:
     code = f"import signal; signal.signal({number:d}, lambda *_: exit(5)); {WAITS}"
