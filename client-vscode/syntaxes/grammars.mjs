@@ -116,7 +116,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   declaration(DECLARE, "entity.name.type.story", "User Story"),
   declaration(DECLARE, "entity.name.type.variant", "Scenario Variant", "Scenario"),
   declaration(DECLARE, "entity.name.type.behaviour", "Behaviour Tree", "Behaviour"),
-  declaration(DECLARE, "variable.other.constant", "Event", "Task", "const set"),
+  declaration(DECLARE, "variable.other.constant", "Event", "Task", "Requirement", "const set"),
   {
     match: String.raw`(?<![\p{L}\p{N}_-])(event)\s+(${NAME})(?=\s+when(?![\p{L}\p{N}_-]))`,
     captures: { 1: { name: `${DECLARE}.robbdd` }, 2: { name: "variable.other.constant.robbdd" } },
@@ -125,7 +125,8 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   declaration(WORD, "entity.name.type.behaviour", "sequence", "selector"),
   declaration(WORD, "variable.other.property", "node"),
   labels(SECTION, "Given", "When", "Then", "Scenarios", "variation"),
-  labels(PROPERTY, "duration", "task", "template", "scene", "node"),
+  labels(PROPERTY, "duration", "task", "verifies", "id", "source", "template", "scene", "node"),
+  phrases("keyword.other.verifies", "verifies"),
   {
     match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)\s+(${QUALIFIED})`,
     captures: { 1: { name: "storage.type.variable.robbdd" }, 2: { name: "variable.parameter.robbdd" } },
@@ -174,7 +175,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   ),
   // What stays of a declaration that is still being typed.
   phrases(DECLARE, "Scenario Template", "User Story", "Scenario Variant", "Scenario", "Behaviour Tree", "Behaviour", "const set"),
-  phrases(DECLARE, "Event", "Task"),
+  phrases(DECLARE, "Event", "Task", "Requirement"),
   phrases("keyword.other.event", "event"),
   { match: String.raw`\|(?:\s*-{3,}\s*\|)*`, name: "punctuation.separator.table.robbdd" },
 ]);

@@ -31,7 +31,16 @@ SECTIONS = {
             "editors",
             "debugging",
         ),
-        *("gherkin", "pytest", "python", "own-words", "assistants/SKILL", "assistants/language", "troubleshooting"),
+        *(
+            "requirements",
+            "gherkin",
+            "pytest",
+            "python",
+            "own-words",
+            "assistants/SKILL",
+            "assistants/language",
+            "troubleshooting",
+        ),
     ),
     "Examples": (),
     "Reference": (

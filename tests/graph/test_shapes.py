@@ -125,6 +125,8 @@ DAMAGE: dict[str, list[str]] = {
     "text-predicate-names": ["- t:text bdd:argument-names"],
     "text-predicate-text": ["- t:text bdd:template-string"],
     "text-predicate-variables": ["- t:text bdd:argument-variables"],
+    "requirement-text": ["+ t:need a rbw:Requirement"],
+    "verifying-requirement": ["+ t:at rbw:verifies t:task"],
     "timed-once": ["+ t:at a time:AfterEventConstraint"],
     "variable-empty": [f"set {PRODUCT} bdd:of-sets (() () () ())"],
     "variable-foreign": ["set t:sort rbw:variables (t:var-parts t:var-bins t:var-wait)"],

@@ -60,6 +60,7 @@ from robbdd_tools.checks.unused_import import unused_import
 from robbdd_tools.checks.unused_set import unused_set
 from robbdd_tools.checks.unused_task import unused_task
 from robbdd_tools.checks.unused_variable import unused_variable
+from robbdd_tools.checks.unverified_requirement import unverified_requirement
 from robbdd_tools.names.anchors import Anchored, Anchors
 from robbdd_tools.syntax import tree
 
@@ -120,6 +121,7 @@ FILE_RULES = (
     unused_set,
     unused_task,
     unused_variable,
+    unverified_requirement,
 )
 _RULED: frozenset[type[object]] = frozenset(
     {

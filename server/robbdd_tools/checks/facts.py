@@ -21,6 +21,7 @@ UNIQUE_KINDS = frozenset(
     {
         SymbolKind.EVENT,
         SymbolKind.TASK,
+        SymbolKind.REQUIREMENT,
         SymbolKind.OBJECT,
         SymbolKind.WORKSPACE,
         SymbolKind.AGENT,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _NAMED = (
     *(tree.ElementSet, tree.SimilarSet, tree.Composition, tree.Scene),
-    *(tree.Event, tree.Task, tree.ConstantSet, tree.BehaviourTree, tree.Template, tree.Story),
+    *(tree.Event, tree.Task, tree.Requirement, tree.ConstantSet, tree.BehaviourTree, tree.Template, tree.Story),
 )
 Change = tuple[Span, str]
 """A span of a declaration's text (empty: insertion) and its replacement."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -12,14 +12,15 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.features.clause_results import clause_hints, execution_rate, pass_rate, substitutions
+from robbdd_tools.features.clause_results import clause_hints, execution_rate
 from robbdd_tools.features.element_properties import describe_properties
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.imported_statements import describe_graph, describe_statements
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.references import uses
-from robbdd_tools.features.rejudged_results import MARK
+from robbdd_tools.features.requirement_results import requirement_words
+from robbdd_tools.features.result_words import MAX_LISTED, rate_lines, rate_words, result_words
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import (
     clause_sentence,
@@ -42,18 +43,14 @@ from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.clause_results import PassRate, ResultHint
-    from robbdd_tools.features.run_verdicts import Findings, JudgedScenario
+    from robbdd_tools.features.run_verdicts import Findings
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.variant_places import PlacedVariant
 
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
 """Kind of a behaviour tree's composite → the result of a child that ends it."""
-MAX_LISTED = 8
-"""Maximum number of listed members, results or places."""
 _QUOTED = {
     SymbolKind.COMPOSITION,
     SymbolKind.DISTRIBUTION,
@@ -269,6 +266,8 @@ def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
 
 def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> Iterator[str]:
     match definition.kind:
+        case SymbolKind.REQUIREMENT:
+            yield from requirement_words(snapshot, definition, findings)
         case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
             for hint in clause_hints(snapshot, definition.uri, findings):
                 if hint.span == definition.extent:
@@ -283,48 +282,18 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
                 if rate is not None:
                     known = findings.variants.get(one.variant.iri, ())
                     own = [scenario for scenario in known if scenario.execution == one.iri]
-                    yield "Last results:\n\n" + "\n".join(_rate_lines(definition.symbol.name, rate, own))
+                    yield "Last results:\n\n" + "\n".join(rate_lines(definition.symbol.name, rate, own))
         case SymbolKind.VARIANT | SymbolKind.STORY:
             inside = [
                 variant
                 for variant in placed_variants(snapshot, definition.uri)
                 if definition.extent.start <= variant.definition.span.start < definition.extent.end
             ]
-            lines = [line for variant in inside for line in _rate(snapshot, variant, findings)]
+            lines = [line for variant in inside for line in rate_words(snapshot, variant, findings)]
             if lines:
                 yield "Last results:\n\n" + "\n".join(lines)
         case _:
             pass
-
-
-def result_words(hint: ResultHint) -> str:
-    """Return the last results of a clause as a list in Markdown."""
-    age = "Last results, before the text was edited" if hint.stale else "Last results"
-    if hint.rejudged is not None and hint.rejudged.usable:
-        age = f"{hint.rejudged.counts} {MARK}"
-    lines = [f"- {literal(line)}" for line in hint.lines[:MAX_LISTED]]
-    vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
-    substituted = [f"- {literal(words)}" for words in hint.substitutions]
-    return f"{age}:\n\n" + "\n".join((*lines, *vacuous, *substituted))
-
-
-def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
-    """Yield lines about a variant: its pass rate, and the scenarios that did not pass."""
-    rate = pass_rate(snapshot, variant, findings)
-    if rate is not None:
-        yield from _rate_lines(variant.definition.symbol.name, rate, findings.variants[variant.iri])
-
-
-def _rate_lines(name: str, rate: PassRate, scenarios: Sequence[JudgedScenario]) -> Iterator[str]:
-    yield f"- {code(name)}: {rate.label}"
-    yield from (f"  - {literal(words)}" for words in substitutions(scenarios))
-    failed = [scenario for scenario in scenarios if scenario.outcome != "holds"]
-    for scenario in failed[:MAX_LISTED]:
-        judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
-        words = ", ".join(f"{one.name} {one.said}" for one in judged if one.outcome != "holds")
-        yield f"  - {literal(f'{scenario.values}: {words}')}"
-    if len(failed) > MAX_LISTED:
-        yield f"  - … and {len(failed) - MAX_LISTED} more"
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:

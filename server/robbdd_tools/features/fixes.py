@@ -80,12 +80,15 @@ def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Import
 def _declarations(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, reference: Reference
 ) -> Iterator[Fix]:
-    """Yield the declaration of a missing event, task or variable."""
+    """Yield the declaration of a missing event, task, requirement or variable."""
     role, path = reference.ref.role, reference.ref.path
     namespace = placed.declaration.symbols[0].namespace if placed.declaration.symbols else None
     argument = "" if namespace == FILE_NAMESPACE else f"(ns={namespace}) "
-    if role in ("Event", "Task") and "." not in path and namespace is not None:
-        edit = line_below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
+    if role in ("Event", "Task", "Requirement") and "." not in path and namespace is not None:
+        body = ' { "" }' if role == "Requirement" else ""
+        above = (tree.Event, tree.Task, tree.Namespace, tree.Import)
+        above = (tree.Requirement, *above) if role == "Requirement" else above
+        edit = line_below(file, above, f"{role} {argument}{path}{body}")
         yield Fix(f"Declare the {role.lower()} '{path}'", (edit,))
     if role in ("Variable", "Term", "AnySet"):
         owner, _, name = path.rpartition(".")

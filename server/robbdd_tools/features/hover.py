@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.catalog_source import describe_catalog_entry
 from robbdd_tools.features.clause_results import clause_hints
-from robbdd_tools.features.describe import describe, describe_import, result_words
+from robbdd_tools.features.describe import describe, describe_import
 from robbdd_tools.features.element_properties import describe_property
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.outside_names import outside_name_at
 from robbdd_tools.features.policy_results import policy_hints
+from robbdd_tools.features.result_words import result_words
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.features.studies import is_study

@@ -12,6 +12,7 @@ from robbdd_tools.features.describe import variants_of
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.sentences import word_of
 from robbdd_tools.names.elements import Site, site_of
+from robbdd_tools.names.requirement_links import key_of, verifiers
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
@@ -36,6 +37,9 @@ def implementation(snapshot: Snapshot, uri: str, offset: int) -> list[Place]:
             return [(one.site.uri, one.site.span(one.variant.name)) for one in variants_of(snapshot, definition)]
         case SymbolKind.TASK:
             return list(_declaring(snapshot, definition, tree.Template, "Task"))
+        case SymbolKind.REQUIREMENT:
+            found = verifiers(snapshot, [definition])[key_of(definition)]
+            return [(one.variant.definition.uri, one.variant.definition.span) for one in found]
         case SymbolKind.SCENE:
             return list(_declaring(snapshot, definition, tree.SceneInstance, "Scene"))
         case SymbolKind.VARIANT:

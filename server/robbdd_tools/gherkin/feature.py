@@ -10,6 +10,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.background_tables import SceneTable, extra_elements, members, scene_tables, variable_table
 from robbdd_tools.gherkin.render import Sheet, our_sheet
+from robbdd_tools.gherkin.requirement_tags import requirement_tags, variant_tags
 from robbdd_tools.gherkin.scenario_outline import Outline, outline, variable_name
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
@@ -186,7 +187,7 @@ class _FeatureWriter:
         story = self._story
         name = text.line(self._writer.curie(story.iri))
         role, feature, benefit = map(text.line, (story.role, story.feature, story.benefit))
-        tags = (text.tag("story", story.iri),)
+        tags = (text.tag("story", story.iri), *requirement_tags(self._writer.model, [story.iri]))
         return StoryHeader(name, story.iri, role, feature, benefit, tags, self._background)
 
 
@@ -208,12 +209,16 @@ class _VariantWriter:
             text.line(writer.curie(variant.iri)),
             variant.iri,
             variant.template.iri,
-            (text.tag("variant", variant.iri), text.tag("template", variant.template.iri)),
+            self._tags_of(variant),
             tuple(variable_name(variable) for variable in variables),
             self._tables,
             self._outline() if outlined else None,
             self._definitions({variable: Placeholder(variable_name(variable)) for variable in variables}),
         )
+
+    def _tags_of(self, variant: Variant) -> tuple[str, ...]:
+        made_from = text.tag("variant", variant.iri), text.tag("template", variant.template.iri)
+        return (*made_from, *variant_tags(self._writer.model, variant))
 
     def _outline(self) -> Outline | None:
         """Return the outline of the scenarios. A table of elements that clauses add to the scene has several rows."""

@@ -317,6 +317,7 @@ class AcceptanceModel:
     - ``prefixes``: maps each prefix to its namespace, for writing CURIEs.
     - ``executions``: the executions in written order.
     - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
+    - ``verifies``: the requirements that a story, a variant, a template or a clause verifies.
     """
 
     stories: tuple[Story, ...]
@@ -326,6 +327,7 @@ class AcceptanceModel:
     executions: tuple[Execution, ...] = ()
     trees: tuple[BehaviourTree, ...] = ()
     correct_places: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
+    verifies: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
 
     def curie(self, iri: str) -> str:
         """Shorten an IRI by the longest namespace that it starts with. If there is none, return the IRI unchanged."""

@@ -44,12 +44,14 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     SymbolKind.SCENE: _KINDS.Module,
     SymbolKind.NAMESPACE: _KINDS.Module,
     SymbolKind.TASK: _KINDS.Constant,
+    SymbolKind.REQUIREMENT: _KINDS.Reference,
 }
 
 _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
     SymbolKind.NAMESPACE: types.SymbolKind.Namespace,
     SymbolKind.EVENT: types.SymbolKind.Event,
     SymbolKind.TASK: types.SymbolKind.Constant,
+    SymbolKind.REQUIREMENT: types.SymbolKind.Key,
     SymbolKind.TEMPLATE: types.SymbolKind.Class,
     SymbolKind.VARIABLE: types.SymbolKind.Variable,
     SymbolKind.SET_VARIABLE: types.SymbolKind.Variable,

@@ -17,6 +17,7 @@ from robbdd_tools.features.studies import is_study
 from robbdd_tools.lsp.commands import GHERKIN, RECORD, RERUN, RUN
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.json_text import JsonText, Passages, joined
+from robbdd_tools.lsp.requirement_lenses import requirement_lenses
 from robbdd_tools.lsp.result_hover import REPLAY
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.study_lenses import study_lenses
@@ -108,6 +109,7 @@ class LensWriter:
             place = convert.range(document, one.definition.span)
             found = self._lenses(_of_execution(snapshot, one, findings), place, recorded=False)
             texts.append(joined(map(self._serialise, found)))
+        texts.append(joined(map(self._serialise, requirement_lenses(convert, snapshot, uri, findings))))
         return JsonText(f"[{joined(texts)}]")
 
     def _of_variants(

@@ -18,9 +18,9 @@ from robbdd_tools import __version__
 from robbdd_tools.base.checkpoint import Abandoned
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.printable import printable
-from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.project_findings import ProjectFindings
+from robbdd_tools.features.result_diagnostics import result_diagnostics
 from robbdd_tools.features.run_verdicts import Findings, Results
 from robbdd_tools.lsp.analysis_thread import AnalysisThread
 from robbdd_tools.lsp.background import Background
@@ -322,7 +322,7 @@ class RobbddServer(LanguageServer):
 
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._shapes.valid(snapshot, uri)]
-            found += clause_diagnostics(snapshot, uri, self.findings_of(snapshot, uri), brief=self.shows_pictures)
+            found += result_diagnostics(snapshot, uri, self.findings_of(snapshot, uri), brief=self.shows_pictures)
             document = document_of(snapshot, uri)
             shown = [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
             return document.version, [*shown, *model_errors(snapshot, self.convert, uri, broken)]

@@ -43,6 +43,7 @@ APPEARANCES: Mapping[str, tuple[str, ...]] = {
     SymbolKind.TREE_NODE: (_TYPES.Property.value, "behaviour"),
     SymbolKind.EVENT: (_TYPES.Event.value,),
     SymbolKind.TASK: (_TYPES.EnumMember.value, "task"),
+    SymbolKind.REQUIREMENT: (_TYPES.EnumMember.value, "requirement"),
     SymbolKind.VARIABLE: (_TYPES.Variable.value,),
     SymbolKind.SET_VARIABLE: (_TYPES.Variable.value, "set"),
     SymbolKind.OBJECT: (_TYPES.EnumMember.value, "object"),

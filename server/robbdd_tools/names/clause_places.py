@@ -14,6 +14,8 @@ from robbdd_tools.syntax.when_paths import when_path
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
+FOR_ALL = "for all"
+"""Name of a loop; no name in a text contains a space."""
 MAX_NESTED = 100
 """Maximum nesting depth; deeper clauses are in no graph."""
 
@@ -70,7 +72,7 @@ class _Walk:
                 yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))
         if body.for_all is not None:
             inner = f"{path}.all"
-            yield self._placed("forall", inner, body.for_all, "for all")
+            yield self._placed("forall", inner, body.for_all, FOR_ALL)
             if inner.count(".") <= MAX_NESTED:
                 yield from self.body(body.for_all.body, inner)
         yield from self.top(body.then, "then", path)

@@ -12,6 +12,7 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "Namespace": (SymbolKind.NAMESPACE,),
     "Event": (SymbolKind.EVENT,),
     "Task": (SymbolKind.TASK,),
+    "Requirement": (SymbolKind.REQUIREMENT,),
     "Template": (SymbolKind.TEMPLATE,),
     "Variable": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE),
     "Term": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE, *_ELEMENTS),

@@ -37,6 +37,17 @@ class Task(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Requirement(Node):
+    """``Requirement (ns=…) name { "text" id: "…" source: "…" }``; ``identifier`` is its identifier in other tools."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+    text: Text
+    identifier: Text | None
+    source: Text | None
+
+
+@dataclass(frozen=True, slots=True)
 class ConstantSet(Node):
     """``const set (ns=…) name { … }``."""
 
@@ -83,20 +94,25 @@ class TextPredicate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Fluent(Node):
-    """``name: holds(predicate [whenever conditions], time constraint)``; ``published`` generates a missing name."""
+    """``name: holds(predicate [whenever conditions], time constraint) [verifies requirements]``.
+
+    ``published`` generates a missing name.
+    """
 
     name: Name
     predicate: PhraseUse | TextPredicate
     conditions: tuple[PhraseUse, ...]
     time: TimeConstraint
+    verifies: tuple[Ref, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class TextClause(Node):
-    """``"free text" time-constraint``."""
+    """``"free text" time-constraint [verifies requirements]``."""
 
     text: Text
     time: TimeConstraint
+    verifies: tuple[Ref, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +252,7 @@ class Template(Node):
     name: Name
     duration: During | None
     task: Ref | None
+    verifies: tuple[Ref, ...]
     variables: tuple[Variable, ...]
     events: tuple[DefinedEvent, ...]
     body: Body
@@ -280,6 +297,7 @@ class Variant(Node):
     name: Name
     template: Ref
     scene: Ref
+    verifies: tuple[Ref, ...]
     given: Expression | None
     events: tuple[Occurrence, ...]
     then: Expression | None
@@ -298,4 +316,5 @@ class Story(Node):
     role: Text | None
     feature: Text | None
     benefit: Text | None
+    verifies: tuple[Ref, ...]
     variants: Sequence[Variant]

@@ -18,6 +18,7 @@ class SymbolKind(StrEnum):
     NAMESPACE = "namespace"
     EVENT = "event"
     TASK = "task"
+    REQUIREMENT = "requirement"
     OBJECT = "object"
     WORKSPACE = "workspace"
     AGENT = "agent"

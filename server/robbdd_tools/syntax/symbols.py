@@ -23,6 +23,7 @@ _SETS = {
 _TOP: dict[type[tree.Node], SymbolKind] = {
     tree.Event: SymbolKind.EVENT,
     tree.Task: SymbolKind.TASK,
+    tree.Requirement: SymbolKind.REQUIREMENT,
     tree.ConstantSet: SymbolKind.CONSTANT_SET,
     tree.Composition: SymbolKind.COMPOSITION,
     tree.Scene: SymbolKind.SCENE,

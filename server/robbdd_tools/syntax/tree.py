@@ -21,6 +21,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Negation,
     Occurrence,
     PhraseUse,
+    Requirement,
     Story,
     Task,
     Template,
@@ -155,6 +156,7 @@ DeclarationTree = (
     | Scene
     | Event
     | Task
+    | Requirement
     | BehaviourTree
     | ConstantSet
     | Template
@@ -262,6 +264,7 @@ __all__ = [
     "Quantity",
     "Quaternion",
     "Ref",
+    "Requirement",
     "RevoluteJoint",
     "RigidBody",
     "RosAction",

@@ -18,7 +18,7 @@ from robbdd_tools.graph.acceptance_model import (
 )
 from robbdd_tools.graph.rdf.prefixes import reading_prefixes
 from robbdd_tools.graph.rdf.records import Incomplete, Records
-from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, VERIFIES
 from robbdd_tools.graph.read.behaviour_trees import read_trees
 from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_names
 from robbdd_tools.graph.read.executions import read_executions
@@ -50,7 +50,8 @@ def read_model(graph: Graph, places: Places = _nowhere, records: Records | None 
     executions = read_executions(records, InstanceReader(records, sets, places), places)
     trees = read_trees(records, places)
     correct = _correct_places(records, sets)
-    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct)
+    verifies = {node: records.iris(records.all(node, VERIFIES)) for node in records.subjects(VERIFIES)}
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct, verifies)
 
 
 def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> dict[Iri, tuple[Iri, ...]]:

@@ -27,6 +27,7 @@ from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.graph.text.property_text import set_reference
+from robbdd_tools.graph.text.requirements import verified
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol.time_words import occurrence_words
 from robbdd_tools.syntax.when_paths import when_path
@@ -114,10 +115,11 @@ class ClauseText:
             case Fluent() | TextFluent():
                 name = self.names.declare(clause.iri, "clause", owner=self.owner, namespace=self.namespace)
                 time = self.time(clause.time, clause.seconds)
-                return f"{name}: holds({self._predicate(clause)}{self._condition(clause, name)}, {time})"
+                predicate = f"{self._predicate(clause)}{self._condition(clause, name)}"
+                return f"{name}: holds({predicate}, {time}){self._verified(clause)}"
             case TextClause():
                 self._named(clause.iri, "text", path)
-                return f"{quoted(clause.text)} {self.time(clause.time, clause.seconds)}"
+                return f"{quoted(clause.text)} {self.time(clause.time, clause.seconds)}{self._verified(clause)}"
             case Junction(operator="not"):
                 self._named(clause.iri, "not", path)
                 return f"( not {self._joined('and', self._each(clause.operands, path))} )"
@@ -132,6 +134,9 @@ class ClauseText:
                 return f"( var {name} exists in {in_set} ) such that {{\n{indented(inner)}\n}}"
             case _:
                 raise Incomplete(f"{clause.iri} is not allowed in Given or Then")
+
+    def _verified(self, clause: Clause) -> str:
+        return verified(self.names, clause.iri, " verifies")
 
     def _predicate(self, clause: Fluent | TextFluent) -> str:
         if isinstance(clause, Fluent):
@@ -248,6 +253,7 @@ def template_text(names: Names, reader: ClauseReader, template: Iri, variables: 
     for scenario in records.iris(records.all(template, "bdd:of-scenario")):
         for task in records.iris(records.all(scenario, "task:of-task"))[:1]:
             head += f"task: {names.lazily(task, 'task')}\n"
+    head += f"{links}\n" if (links := verified(names, template, "verifies:")) else ""
     lines += [f"{writer.defined_event(event)}\n" for event in reader.events(template)]
     body = writer.body(reader.clauses(template))
     inner = indented((head + "".join(lines) + body).rstrip())

@@ -15,6 +15,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader, used_names
 from robbdd_tools.graph.text.behaviour_trees import tree_text
 from robbdd_tools.graph.text.clauses import template_text
 from robbdd_tools.graph.text.names import Names, quoted
+from robbdd_tools.graph.text.requirements import requirement_texts
 from robbdd_tools.graph.text.scenes import SceneText
 from robbdd_tools.graph.text.stories import StoryText
 
@@ -29,6 +30,7 @@ _LARGER = (
     *("bdd:ScenarioTemplate", "bdd:UserStory", "bdd:ScenarioVariant", "bdd:FluentClause", "bdd:ScenarioVariable"),
     *("bdd:Scene", "bdd:Set", "bhv:Behaviour", "bt:BehaviourTree", "env:Object", "env:Workspace", "agn:Agent"),
     "rbw:DefinedEvent",
+    "rbw:Requirement",
 )
 """Types of nodes that are not written as events or tasks, even if they also have such a type, which is then lost."""
 
@@ -83,6 +85,7 @@ def _namespaces(spaces: Mapping[str, str]) -> list[str]:
 def _criteria(names: Names, scenes: SceneText) -> _Criteria:
     records = names.records
     left_out: dict[str, str] = {}
+    requirements = list(requirement_texts(names))
     for kind, types in (("task", ("task:Task",)), ("event", ("time:Event", OWL_INSTANT))):
         for node in sorted({node for type_ in types for node in records.instances(type_)}):
             if not any(records.is_a(node, other) for other in _LARGER):
@@ -121,7 +124,7 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
         for kind, word in (("task", "Task"), ("event", "Event"))
         for node in names.declared.get(kind, ())
     ]
-    return _Criteria([*simple, *sets, "", *blocks], left_out)
+    return _Criteria([*simple, *requirements, *sets, "", *blocks], left_out)
 
 
 def _variables(records: Records, reader: ClauseReader, template: Iri) -> list[Iri]:

@@ -13,6 +13,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.clauses import ClauseText
 from robbdd_tools.graph.text.names import Names, braces, indented, quoted
 from robbdd_tools.graph.text.property_text import base_of, set_reference
+from robbdd_tools.graph.text.requirements import verified
 from robbdd_tools.graph.text.scenes import SceneText
 from robbdd_tools.syntax.when_paths import when_path
 
@@ -50,6 +51,7 @@ class StoryText:
         texts = [records.text(story, f"rbw:{part}") for part in ("role", "feature", "benefit")]
         role, feature, benefit = map(quoted, texts)
         head = f"As A {role}\nI Want {feature}\nSo That {benefit}\n\n" if any(texts) else ""
+        head += f"{links}\n\n" if (links := verified(names, story, "verifies:")) else ""
         inner = indented(f"{head}Scenarios:\n{indented((chr(10) * 2).join(variants))}")
         return f"User Story (ns={names.prefix(namespace)}) {name} {{\n{inner}\n}}"
 
@@ -66,6 +68,7 @@ class StoryText:
         parts = [
             f"template: {names.reference(template)}",
             f"scene: {self.scenes.scenes[node]}",
+            verified(names, node, "verifies:"),
             writer.conditions(clauses, "given"),
             "When:\n" + indented("\n".join(events)) if events else "",
             writer.conditions(clauses, "then"),

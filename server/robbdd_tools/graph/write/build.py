@@ -27,6 +27,7 @@ from robbdd_tools.graph.write.imported_faults import imported_faults
 from robbdd_tools.graph.write.imported_graphs import NOTHING, ImportedGraph, imported_graph
 from robbdd_tools.graph.write.instances import add_instances
 from robbdd_tools.graph.write.property_sets import PropertySets
+from robbdd_tools.graph.write.requirements import add_requirement, add_verified
 from robbdd_tools.graph.write.scenes import (
     Memberships,
     Scenes,
@@ -166,6 +167,8 @@ def _add_simple(frame: Frame, scenes: Scenes, root: tree.ChunkTree) -> None:
             if node is not None:
                 kind = "time:Event" if isinstance(root, tree.Event) else "task:Task"
                 frame.sink.add_types(node, [kind], frame.at(root.name))
+        case tree.Requirement():
+            add_requirement(frame, root)
         case tree.ConstantSet():
             _add_constant_set(frame, root)
         case tree.BehaviourTree():
@@ -214,6 +217,7 @@ def _add_template(frame: Frame, selected: PropertySets, template: tree.Template,
     if template.task is not None and task is not None:
         sink.add(scenario, "task:of-task", task, frame.at(template.task))
         tasks[node] = task
+    add_verified(frame, node, template.verifies)
     _add_variables(frame, node, template)
     writer = ClauseWriter(frame, selected, namespace_of(node, template.name.text), template.name.text, scenario)
     sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))

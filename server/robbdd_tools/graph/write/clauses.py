@@ -18,6 +18,7 @@ from robbdd_tools.graph.rdf.vocabulary import (
     TOGETHER,
 )
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
+from robbdd_tools.graph.write.requirements import add_verified
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
 from robbdd_tools.syntax import tree
@@ -134,6 +135,7 @@ class ClauseWriter:
             self._arguments(node, word.slots, fluent.predicate)
         self._conditions(node, "rbw:whenever", f"whenever-{self.owner}.{fluent.name.text}", fluent.conditions)
         self._time(node, fluent.time)
+        add_verified(self.frame, node, fluent.verifies)
         return node
 
     def events(self, template: URIRef, events: Sequence[tree.DefinedEvent]) -> None:
@@ -181,6 +183,7 @@ class ClauseWriter:
             self._start(node, ["rbw:TextClause"], role, self.frame.at(clause.text))
             self._sink.add(node, "rbw:text", self._sink.literal(clause.text.value), self.frame.at(clause.text))
             self._time(node, clause.time)
+            add_verified(self.frame, node, clause.verifies)
         return node
 
     def _junction(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, SELECTIONS
 from robbdd_tools.graph.write.clauses import ClauseWriter
+from robbdd_tools.graph.write.requirements import add_verified
 from robbdd_tools.graph.write.scenes import Memberships, Scenes
 from robbdd_tools.graph.write.sink import Frame, Sink, namespace_of
 from robbdd_tools.syntax import tree
@@ -52,6 +53,7 @@ def add_story(sink: Sink, known: Known, parts: Sequence[Reached], position: int)
     for term, text in (("role", story.role), ("feature", story.feature), ("benefit", story.benefit)):
         if text is not None:
             sink.add(node, f"rbw:{term}", sink.literal(text.value), frame.at(text))
+    add_verified(frame, node, story.verifies)
     sink.add(node, "rbw:position", sink.literal(position))
     namespace = namespace_of(node, story.name.text)
     variants: list[URIRef] = []
@@ -82,6 +84,7 @@ def _add_variant(frame: Frame, known: Known, variant: tree.Variant, place: _Plac
     template = frame.target(variant.template)
     sink.add_types(node, ["bdd:ScenarioVariant"], frame.at(variant.name))
     sink.add(node, "bdd:of-template", template, frame.at(variant.template))
+    add_verified(frame, node, variant.verifies)
     if template is not None:
         writer = ClauseWriter(frame, known.scenes.selected, place.namespace, place.owner, f"{template}-scenario")
         clauses = writer.top(variant.given, "given") + writer.occurrences(variant.events, when_path("", 0))
