@@ -62,6 +62,7 @@ HOMES = {
     "rich": {"commands"},
     "shtab": {"commands"},
     "scipy": {"campaign"},
+    "distributed": {"campaign"},
     "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
     "msgpack": {"user_code"},

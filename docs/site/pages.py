@@ -23,6 +23,7 @@ SECTIONS = {
             "robots",
             "logs",
             "campaigns",
+            "cluster",
             "external-systems",
             "comparing",
             "mutate",

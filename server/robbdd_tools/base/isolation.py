@@ -18,6 +18,10 @@ EXPOSED = (
 )
 UNTRUSTED = "untrusted"
 """Value of ``NO_USER_CODE`` if the workspace is not trusted (rather than ``--no-user-code`` given)."""
+OWNER_FORBIDS = "worker"
+"""Value of ``NO_USER_CODE`` on a worker of a cluster whose owner does not allow users' code."""
+WORKER_USER_CODE = "ROBBDD_WORKER_USER_CODE"
+"""Environment variable of a worker of a cluster: its value ``allow`` permits users' code."""
 
 
 def isolate() -> None:

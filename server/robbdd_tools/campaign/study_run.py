@@ -145,9 +145,7 @@ class StudyRun:
 
         Raises ``StudyProblem``, ``OSError``, ``UserCodeRefused`` and ``NothingSelected``.
         """
-        done = self.store.batches()
-        for number in done:
-            shutil.rmtree(self._place(number).folder, ignore_errors=True)
+        done = self._removed_batches()
         finished, holding = self._stored()
         began, before = monotonic(), finished
         for batch in self.batches:
@@ -164,12 +162,23 @@ class StudyRun:
             finished, holding = self._stored()
             yield StudyProgress(finished, self.total, holding, (finished - before) / max(monotonic() - began, 1e-9))
 
+    def _removed_batches(self) -> frozenset[int]:
+        """Return the numbers of the stored batches, and remove what is left of their folders."""
+        done = self.store.batches()
+        for number in done:
+            shutil.rmtree(self._place(number).folder, ignore_errors=True)
+        return done
+
+    def _begins_stage(self, batch: Batch) -> bool:
+        """Return whether a batch is the first one of a later stage than the first."""
+        return batch.stage > 1 and self.batches[batch.number - 2].stage != batch.stage
+
     def _decided(self, batch: Batch) -> bool:
         """Return whether the study stops before a batch, which it does only before the first one of a stage."""
         rule = self._study.stop
-        earlier = [one.number for one in self.batches if one.stage < batch.stage]
-        if rule is None or not earlier or self.batches[batch.number - 2].stage == batch.stage:
+        if rule is None or not self._begins_stage(batch):
             return False
+        earlier = [one.number for one in self.batches if one.stage < batch.stage]
         counted = [(total, holding) for number, total, holding in self.store.outcomes() if number <= earlier[-1]]
         totals = (sum(column) for column in zip(*counted, strict=True))
         total, holding = totals if counted else (0, 0)
@@ -193,6 +202,10 @@ class StudyRun:
                 self.ending = run.problem or self._reason or run.ending
                 if self.ending:
                     return
+        self._store(batch, place)
+
+    def _store(self, batch: Batch, place: StoredRun) -> None:
+        """Move the results of a finished batch to the study's store."""
         results = place.read_results()
         if results is None or not all(one.finished is not None for one in results.scenarios):
             raise StudyProblem(f"batch {batch.number} has executions without a result")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
@@ -16,7 +17,14 @@ from robbdd_tools.base.writing import replacing
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_rates import study_rates
-from robbdd_tools.campaign.study_run import StudyRun, open_batch, open_results, remove_results, study_folder
+from robbdd_tools.campaign.study_run import (
+    StudyProblem,
+    StudyRun,
+    open_batch,
+    open_results,
+    remove_results,
+    study_folder,
+)
 from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -42,7 +50,8 @@ INTERRUPTED = "the study was interrupted"
 class StudyOptions:
     """The options of ``robbdd study run`` and, with ``resumed``, of ``robbdd study resume``.
 
-    ``store`` is the folder of all studies. With ``restart``, earlier results are removed.
+    ``store`` is the folder of all studies. With ``restart``, earlier results are removed. ``scheduler`` is the address
+    of a cluster's scheduler, whose workers get the files and folders in ``sent``, too.
     """
 
     path: Path
@@ -50,6 +59,8 @@ class StudyOptions:
     jobs: int | None = None
     resumed: bool = False
     restart: bool = False
+    scheduler: str = ""
+    sent: Sequence[Path] = ()
 
 
 def run_study(options: StudyOptions) -> int:
@@ -94,7 +105,7 @@ def _run_study(options: StudyOptions) -> int:
     if options.restart:
         remove_results(folder)
     policy = Policy.of(jobs=options.jobs)
-    with StudyRun(study, folder, policy, resumed=options.resumed) as run:
+    with _begun(study, folder, policy, options) as run:
         print_note(f"robbdd: {_announcement(study, run, policy)}")
         ended_by = _follow(run)
         _print_results(run.store)
@@ -108,6 +119,24 @@ def _run_study(options: StudyOptions) -> int:
             if isinstance(study.stop, RatioTest):
                 return RULED.get(ruling, CANNOT_TELL)
         return OK if all(total == holding for _, total, holding in run.store.outcomes()) else FINDINGS
+
+
+@contextmanager
+def _begun(study: Study, folder: Path, policy: Policy, options: StudyOptions) -> Generator[StudyRun]:
+    if not options.scheduler:
+        with StudyRun(study, folder, policy, resumed=options.resumed) as run:
+            yield run
+        return
+    from robbdd_tools.campaign.cluster import Cluster
+    from robbdd_tools.campaign.cluster_study import ClusterStudyRun
+
+    missing = next((path for path in options.sent if not path.exists()), None)
+    if missing is not None:
+        raise StudyProblem(f"--send {missing}: there is no such file or folder")
+    with Cluster(options.scheduler, lambda text: print_note(f"robbdd: {text}")) as cluster:
+        run = ClusterStudyRun(study, folder, policy, resumed=options.resumed, cluster=cluster, sent=options.sent)
+        with run:
+            yield run
 
 
 def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:

@@ -21,6 +21,10 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         text = "agent processes at a time (default: as many as there are cores)"
         one.add_argument("--jobs", metavar="N", type=positive, help=text)
+        text = "execute the study on a cluster: the address of its Dask scheduler, such as tcp://host:8786"
+        one.add_argument("--scheduler", metavar="ADDRESS", default="", help=text)
+        text = "also send this file or folder to the workers, which users' code reads; may be repeated"
+        one.add_argument("--send", metavar="PATH", action="append", type=Path, default=[], help=text)
         text = "connect to endpoints on this host; may be repeated (always: endpoint-hosts in your settings)"
         one.add_argument("--allow-host", metavar="HOST", action="append", help=text)
         _allow_store(one)
@@ -86,7 +90,8 @@ def _run(options: argparse.Namespace) -> int:
 
     restart = getattr(options, "restart", False)
     with output_may_be_lost():
-        return run_study(StudyOptions(options.path, options.store, options.jobs, options.resumed, restart))
+        chosen = (options.path, options.store, options.jobs, options.resumed, restart)
+        return run_study(StudyOptions(*chosen, options.scheduler, options.send))
 
 
 def _status(options: argparse.Namespace) -> int:

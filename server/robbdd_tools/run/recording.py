@@ -105,9 +105,10 @@ class Recording:
         self._done = {index for index, one in enumerate(results.scenarios) if one.finished is not None}
         return results
 
-    def take(self, message: RunMessage) -> bool:
+    def take(self, message: RunMessage, host: str = "") -> bool:
         """Store a message. If it finishes an execution, that execution is committed on return.
 
+        ``host`` is the machine that executed it, unless it is this one.
         Returns ``is_new(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator than before.
         """
         match message:
@@ -123,7 +124,7 @@ class Recording:
             case ScenarioFinished(index):
                 judged = self._open.pop(index, [])
                 if index not in self._done:
-                    self._write(message, judged)
+                    self._write(message, judged, host or platform.node())
             case _:
                 pass
         return self.is_new(message)
@@ -186,7 +187,7 @@ class Recording:
         row = (self._place.number, fault.id, shared, json.dumps(asdict(fault)))
         connection.execute("INSERT OR REPLACE INTO fault (run, id, shared, content) VALUES (?, ?, ?, ?)", row)
 
-    def _write(self, finished: ScenarioFinished, messages: Sequence[Detail]) -> None:
+    def _write(self, finished: ScenarioFinished, messages: Sequence[Detail], host: str) -> None:
         spec = self.manifest.scenarios[finished.index]
         judged = {message.line: message for message in messages if isinstance(message, ClauseJudged)}
         varied = {message.line: message for message in messages if isinstance(message, MarginRanges)}
@@ -206,7 +207,7 @@ class Recording:
             "contacts": json.dumps([asdict(one) for one in finished.contacts]),
             "wall": finished.wall,
             "stepping": finished.stepping,
-            "host": platform.node(),
+            "host": host,
             "ended": _now(),
             "printed": "".join(f"{message.text}\n" for message in messages if isinstance(message, Output)),
         }

@@ -31,6 +31,19 @@ def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
     return {name: _digest(path) for name, path in _named(manifest, folder).items()}
 
 
+def used_paths(manifest: Manifest, folder: Path) -> list[Path]:
+    """Return the paths of the files of ``digests`` that exist."""
+    return [path for path in _named(manifest, folder).values() if path.is_file()]
+
+
+def imported_by_steps(manifest: Manifest) -> list[Path]:
+    """Return the files in the folders of the models that the steps of users import."""
+    folders = dict.fromkeys(_folder(None, spec.model).resolve() for spec in manifest.scenarios)
+    names = {name for original in manifest.sources.values() for name in _imports(Path(original))}
+    found = (path for folder in folders for name in sorted(names) for path in _modules(name, folder))
+    return list(dict.fromkeys(found))
+
+
 def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
     """Return the files of ``digests`` whose content has changed."""
     paths = ((folder / name).resolve() for name in known)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.external_systems import ENDPOINT_HOSTS, endpoint_host
-from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
+from robbdd_tools.base.isolation import NO_USER_CODE, OWNER_FORBIDS, UNTRUSTED, WORKER_USER_CODE
 from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.catalog.executable import USERS_KINDS
 from robbdd_tools.graph.project_settings import user_setting
@@ -20,7 +20,10 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ExecutionSpec, Manifest, ScenarioSpec
 
 _FIX = "leave out --no-user-code if you trust this code, or run scenarios without it"
-_FIX_TRUST = "trust the workspace if you trust this code"
+_FIXES = {
+    UNTRUSTED: "trust the workspace if you trust this code",
+    OWNER_FORBIDS: f"its owner allows users' code by starting it with {WORKER_USER_CODE}=allow",
+}
 
 
 HOSTS = "endpoint-hosts"
@@ -47,7 +50,7 @@ def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates:
     reason = os.environ.get(NO_USER_CODE)
     if not reason:
         return _hosts(manifest) if simulates and judges else ""
-    fix = _FIX_TRUST if reason == UNTRUSTED else _FIX
+    fix = _FIXES.get(reason, _FIX)
     found = list(dict.fromkeys(_uses(manifest, folder, judges, simulates)))
     return f"{'; '.join(found)}: {fix}" if found else ""
 

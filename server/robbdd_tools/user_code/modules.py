@@ -9,12 +9,15 @@ from pathlib import Path
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.interpreter import inherited_paths, started_in
-from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED, UNTRUSTED
+from robbdd_tools.base.isolation import NO_USER_CODE, OWNER_FORBIDS, SEARCHED, UNTRUSTED
 from robbdd_tools.catalog.registry import load_catalog
 
 _folders: list[str] = []
 """Folders of models whose code was requested; these and ``_last``, those of ``PYTHONPATH``, end ``sys.path``."""
 _last: list[str] = []
+
+
+_REASONS = {UNTRUSTED: "the workspace is not trusted", OWNER_FORBIDS: "the owner of the worker does not allow it"}
 
 
 class NotImported(Exception):
@@ -38,7 +41,7 @@ def search(folder: Path | None) -> None:
     """
     reason = os.environ.get(NO_USER_CODE)
     if reason:
-        why = "the workspace is not trusted" if reason == UNTRUSTED else "--no-user-code was given"
+        why = _REASONS.get(reason, "--no-user-code was given")
         raise NotImported(f"users' code is not run: {why}")
     # The catalog's third-party words are found on sys.path: only installed packages may add any.
     load_catalog()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import tempfile
 import threading
-from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
@@ -59,6 +59,8 @@ class Run(Recorded):
         self._recording = recording
         self._listeners: list[Listener] = []
         self._scheduler = Scheduler(place.folder, results.manifest, policy, self._take, indices)
+        self.open_indices = tuple(range(len(results.manifest.scenarios)) if indices is None else indices)
+        """The numbers of the scenarios that were open when the run was begun or resumed."""
         self._on_close = on_close
         self._reason = ""
         self._thread: threading.Thread | None = None
@@ -135,6 +137,20 @@ class Run(Recorded):
             self.ending = self.problem = failure_reason(error)
         finally:
             self._conclude()
+
+    def receive(self, messages: Iterable[RunMessage], host: str) -> None:
+        """Record messages about executions of another machine, called ``host``, instead of executing scenarios here.
+
+        Raises ``OSError``, and ``OtherSimulator`` if the machine does not simulate as the run did before.
+        """
+        for message in messages:
+            if self._recording.take(message, host):
+                self.progress.apply(message)
+
+    def conclude(self, ending: str = "") -> None:
+        """End a run whose messages were received. ``ending`` is the reason for open executions."""
+        self.ending = ending
+        self._conclude()
 
     def wait(self) -> Self:
         """Execute all scenarios, and return the run."""
