@@ -50,6 +50,7 @@ SECTIONS = {
         "semantics",
         "diagnostics/README",
         "python-reference",
+        "protocol",
         "graph",
         "files",
         "limits",
