@@ -104,8 +104,27 @@ step("axe finds no barrier in high contrast", async () => {
   const history = workbench.webview("History of");
   await history.getByRole("heading", { name: /holds in/ }).waitFor();
   await accessibleInEach(workbench, history, "contrast-axe-history", HIGH_CONTRAST.schemes);
+  await workbench.command("View: Focus First Editor Group");
+  await workbench.command("RobBDD: Show Matrix of Verdicts…");
+  const matrix = workbench.webview("Study");
+  await matrix.getByRole("grid").waitFor();
+  await accessibleInEach(workbench, matrix, "contrast-axe-matrix", HIGH_CONTRAST.schemes);
   await workbench.page.locator(".tab", { hasText: "Replay bin-heights" }).click();
   await page.locator(".row").first().waitFor();
+});
+
+step("who wants no motion sees none, and a replay that is asked for still plays", async () => {
+  await workbench.page.emulateMedia({ reducedMotion: "reduce" });
+  const moving = await page.locator("body").evaluate(() => {
+    const parts = [...document.querySelectorAll("*")].map((element) => getComputedStyle(element));
+    return {
+      asked: matchMedia("(prefers-reduced-motion: reduce)").matches,
+      found: parts.filter(({ animationName, transitionDuration, scrollBehavior }) =>
+        animationName !== "none" || !/^(0s(, )?)+$/.test(transitionDuration) || scrollBehavior !== "auto").length,
+    };
+  });
+  assert.deepEqual(moving, { asked: true, found: 0 });
+  await workbench.page.emulateMedia({ reducedMotion: "no-preference" });
 });
 
 step("in a narrow window nothing is cut off, and no name covers another", async () => {

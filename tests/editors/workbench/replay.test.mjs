@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { describe } from "node:test";
-import { accessibleInEach } from "./harness/axe.mjs";
+import { accessibleInContrast, accessibleInEach } from "./harness/axe.mjs";
 import { execute } from "./harness/models.mjs";
 import { eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
@@ -213,6 +213,7 @@ describe("with three dimensions", () => {
     const fault = page.getByRole("button", { name: /overlap by \d+ mm/ });
     await fault.waitFor();
     await accessibleInEach(workbench, page, "scene-overlap");
+    await accessibleInContrast(session, page, "scene");
     await page.getByRole("button", { name: "Show the whole scene" }).focus();
     await workbench.page.keyboard.press("ArrowRight");
     assert.match(await page.locator(":focus").getAttribute("aria-label"), /the names in the scene/);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { accessibleInEach } from "./harness/axe.mjs";
+import { accessibleInContrast, accessibleInEach } from "./harness/axe.mjs";
 import { execute } from "./harness/models.mjs";
 import { eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
@@ -104,6 +104,7 @@ step("the history of a clause lists its runs, and two of them are compared", asy
   await comparison.getByText(/^at-goal ✔ → ✗ \(\+.* → −.*\)/).waitFor();
   await noneCut(comparison);
   await accessibleInEach(workbench, comparison, "comparison");
+  await accessibleInContrast(session, comparison, "comparison");
   await comparison.getByRole("button", { name: "Replay run 1 and run 2 next to each other" }).click();
   await workbench.page.locator(".tab", { hasText: /Replay bin-heights.*\(run 1\)/ }).waitFor();
   await workbench.page.locator(".tab.active", { hasText: "(run 2)" }).waitFor();

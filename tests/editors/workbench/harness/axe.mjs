@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { ROOT } from "./checkout.mjs";
-import { SCHEMES } from "./workbench.mjs";
+import { HIGH_CONTRAST, PLAIN, SCHEMES } from "./workbench.mjs";
 
 const SOURCE = join(ROOT, "client-vscode", "node_modules", "axe-core", "axe.min.js");
 const GRAVE = new Set(["serious", "critical"]);
@@ -38,4 +38,12 @@ export async function accessibleInEach(workbench, page, name, schemes = SCHEMES)
     await workbench.screenshot(`${name}-${scheme}`);
     await accessible(page, `${name} (${windowClass})`);
   }
+}
+
+/** Assert the same in each theme of high contrast; the dark one without high contrast remains. */
+export async function accessibleInContrast({ server, workbench }, page, name) {
+  await server.configure(HIGH_CONTRAST.settings);
+  await accessibleInEach(workbench, page, `contrast-axe-${name}`, HIGH_CONTRAST.schemes);
+  await server.configure(PLAIN.settings);
+  await workbench.changeScheme("dark");
 }

@@ -8,6 +8,12 @@ import { PATIENCE, TRY, eventually } from "./patience.mjs";
 /** Colour schemes and the class that the window wears in each. */
 export const SCHEMES = { dark: "vs-dark", light: "vs" };
 
+/** Settings under which it wears the usual themes. */
+export const PLAIN = {
+  settings: { "workbench.preferredDarkColorTheme": "Default Dark Modern", "workbench.preferredLightColorTheme": "Default Light Modern" },
+  schemes: SCHEMES,
+};
+
 /** Settings under which the window wears a theme of high contrast in each scheme, and the classes that it has then. */
 export const HIGH_CONTRAST = {
   settings: {

@@ -7,14 +7,13 @@ import { contrast } from "../harness/contrast.mjs";
 import { LONG, TRY, eventually } from "../harness/patience.mjs";
 import { story } from "../harness/story.mjs";
 import { noVerdictAt, themeColour, verdictAt } from "../harness/verdicts.mjs";
-import { HIGH_CONTRAST, SCHEMES } from "../harness/workbench.mjs";
+import { HIGH_CONTRAST, PLAIN } from "../harness/workbench.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
 /** What WCAG 2 asks of text. */
 const READABLE = 4.5;
 /** Minimum contrast of signs, also when faded. */
 const VISIBLE = 3;
-const PLAIN = { settings: { "workbench.preferredDarkColorTheme": "Default Dark Modern", "workbench.preferredLightColorTheme": "Default Light Modern" }, schemes: SCHEMES };
 /** Lines of the model, and the theme's names of their verdict colours. */
 const HOLDS = { line: /^\s*at-source:/, words: /^✔ 4\/4[^(]*$/, side: "after", colour: "robbdd.holdsForeground" };
 const VIOLATED = { line: /^\s*at-goal:/, words: /^✗ 0\/4[^(]*$/, side: "before", colour: "robbdd.violatedForeground" };
