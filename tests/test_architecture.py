@@ -63,6 +63,7 @@ HOMES = {
     "shtab": {"commands"},
     "scipy": {"campaign"},
     "distributed": {"campaign"},
+    "duckdb": {"campaign"},
     "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
     "msgpack": {"user_code"},

@@ -6,16 +6,15 @@ import os
 import random
 import shutil
 import signal
-import socket
 import subprocess
 import sys
-from collections.abc import Callable, Generator, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
 
+from campaign.dask_kit import dask_processes
 from campaign.study_agents import STUDY, QuickAgent, write_study
 from robbdd_tools.base.isolation import NO_USER_CODE, WORKER_USER_CODE
 from robbdd_tools.campaign import cluster
@@ -31,50 +30,9 @@ from robbdd_tools.workbench.deciding_versions import differences, versions
 from robbdd_tools.workbench.parts import Part, execute_part
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-PRELOAD = Path(__file__).with_name("quick_worker.py")
 DRIVER = Path(__file__).with_name("study_agents.py")
 LONG = STUDY.replace("repeat: 10", "repeat: 60").replace("batch: 8", "batch: 24")
 """240 executions in ten batches."""
-
-
-class DaskProcesses:
-    """A scheduler and workers, each a process of its own."""
-
-    def __init__(self, folder: Path, stack: ExitStack, pause: float) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self._port = int(free.getsockname()[1])
-        self._folder, self._stack = folder, stack
-        self._environment = {**os.environ, "PYTHONPATH": str(DRIVER.parents[1]), "ROBBDD_PAUSE": str(pause)}
-        self.address = f"tcp://127.0.0.1:{self._port}"
-        self.scheduler = self.start_scheduler()
-        self.workers: list[subprocess.Popen[bytes]] = []
-
-    def start_scheduler(self) -> subprocess.Popen[bytes]:
-        return self._start("scheduler", "--host", "127.0.0.1", "--port", str(self._port), "--no-dashboard")
-
-    def start_worker(self, *, quick: bool = True) -> None:
-        preload = ["--preload", str(PRELOAD)] if quick else []
-        own = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(self._folder)]
-        self.workers.append(self._start("worker", self.address, *own, *preload))
-
-    def _start(self, name: str, *arguments: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "distributed.cli.dask_" + name, *arguments]
-        log = self._stack.enter_context((self._folder / f"{name}.log").open("ab"))
-        process = subprocess.Popen(command, env=self._environment, stdout=log, stderr=log)
-        self._stack.callback(process.wait)
-        self._stack.callback(process.kill)
-        return process
-
-
-@contextmanager
-def dask_processes(folder: Path, workers: int, pause: float = 0.0) -> Generator[DaskProcesses]:
-    folder.mkdir()
-    with ExitStack() as stack:
-        made = DaskProcesses(folder, stack, pause)
-        for _ in range(workers):
-            made.start_worker()
-        yield made
 
 
 @pytest.fixture
@@ -253,7 +211,7 @@ def test_parts_shrink_at_the_end_and_never_exceed_half_a_minute() -> None:
     pace = Pace()
     assert pace.size(1000, 4) == FIRST
     pace.add(20.0, 10)
-    assert [pace.size(unsent, 4) for unsent in (10_000, 80, 8, 1)] == [15, 10, 2, 2]
+    assert [pace.size(unsent, 4) for unsent in (10_000, 80, 8, 1)] == [15, 10, 5, 5]
     for _ in range(20):
         pace.add(0.1, 10)
-    assert [pace.size(unsent, 4) for unsent in (100_000, 80)] == [3000, 300]
+    assert [pace.size(unsent, 4) for unsent in (100_000, 80)] == [3000, 1000]

@@ -12,9 +12,11 @@ from contextlib import suppress
 from pathlib import Path
 from time import sleep
 
+import duckdb
 import pytest
 
 from campaign.study_agents import QuickAgent, write_study
+from robbdd_tools import __version__
 from robbdd_tools.campaign.study_run import StudyProgress, StudyRun, study_folder
 from robbdd_tools.cli import main
 from robbdd_tools.protocol.messages import RunMessage, ScenarioStarted
@@ -67,6 +69,25 @@ def test_a_study_executes_everything_and_prints_rates(study: Path, capsys: pytes
     assert sum(line.startswith(("  part = ", "  goal = ")) for line in others) == 4
     assert f"in-tray: {expected['holds']} of 40 hold, {expected['violated']} violated, 0 unknown" in printed.out
     assert not list((study_folder(study) / "batches").iterdir())
+
+
+def test_parquet_and_duckdb_have_the_rows_of_the_csv_with_types(study: Path) -> None:
+    main(["study", "run", str(study)])
+    expected = list(csv.DictReader(exported(study).decode().splitlines()))
+    for name in ("x.parquet", "again.parquet", "x.duckdb"):
+        assert main(["study", "export", str(study), "-o", name]) == 0
+    assert Path("x.parquet").read_bytes() == Path("again.parquet").read_bytes()
+    with duckdb.connect("x.duckdb", read_only=True) as database:
+        found = database.execute("SELECT * FROM clauses").fetchall()
+        assert found == database.execute("SELECT * FROM 'x.parquet'").fetchall()
+        names = [column[0] for column in database.description or ()]
+        facts = dict(database.execute("SELECT name, content FROM facts").fetchall())
+    rows = [dict(zip(names, row, strict=True)) for row in found]
+    assert facts["version"] == __version__
+    assert [row["seed"] for row in rows] == [int(row["seed"]) for row in expected]
+    assert [row["margin"] for row in rows] == [float(row["margin"]) for row in expected]
+    assert [row["reason"] for row in rows] == [row["reason"] for row in expected]
+    assert {"", "it moved"} == {row["reason"] for row in rows}
 
 
 def test_an_interrupted_study_is_resumed_with_the_same_bytes(

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 WORK = 30.0
 """Work of a part in s. Starting an agent takes 0.6 s of it."""
-LEAST_WORK = 3.0
+LEAST_WORK = 10.0
 """Work of a part in s at the end of a study, where smaller parts let all workers end at the same time."""
 FIRST = 4
 """Executions of the parts that are sent before the first result."""

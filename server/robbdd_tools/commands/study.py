@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.processes import end_requests
-from robbdd_tools.base.writing import replacing
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_rates import study_rates
@@ -25,6 +23,7 @@ from robbdd_tools.campaign.study_run import (
     remove_results,
     study_folder,
 )
+from robbdd_tools.campaign.study_tables import write_table
 from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -32,7 +31,6 @@ from robbdd_tools.commands.rate_lines import level_line, level_lines
 from robbdd_tools.run.report import margin
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import store_beside
-from robbdd_tools.run.study_store import COLUMNS
 from robbdd_tools.workbench.time_estimate import TimeEstimate, estimate
 
 if TYPE_CHECKING:
@@ -83,7 +81,7 @@ def print_rates(path: Path, store: Path | None) -> int:
 
 
 def export_rows(path: Path, output: Path, store: Path | None) -> int:
-    """Write one row for each clause of each execution as CSV."""
+    """Write one row for each clause of each execution as CSV, Parquet or a DuckDB database."""
     return _explained(lambda: _export_rows(study_folder(path, store), output))
 
 
@@ -210,11 +208,7 @@ def _print_rates(folder: Path) -> int:
 
 def _export_rows(folder: Path, output: Path) -> int:
     with open_results(folder) as store:
-        levels = dict.fromkeys(f"level.{name}" for count in store.counts() for name in count.levels)
-        with replacing(output) as file:
-            writer = csv.DictWriter(file, (*levels, *COLUMNS), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(store.rows())
+        write_table(store, output)
         number = sum(total for _, total, _ in store.outcomes())
     print_note(f"{number} executions in {output}")
     return OK

@@ -32,7 +32,8 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
     status = commands.add_parser("status", help="print the progress of a study, also while it is executed")
     show = commands.add_parser("show", help="print pass rates by factor and by clause, with intervals")
     export = commands.add_parser("export", help="write one row for each clause of each execution")
-    export.add_argument("-o", "--output", metavar="FILE.csv", type=Path, required=True)
+    text = "a CSV file; or .parquet or .duckdb (needs robbdd-tools[analysis])"
+    export.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help=text)
     for one, command in ((status, _status), (show, _show), (export, _export)):
         one.add_argument("path", metavar="FILE.study", type=Path)
         _allow_store(one)

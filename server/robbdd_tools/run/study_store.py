@@ -128,6 +128,10 @@ class StudyStore:
             row = self._connection.execute("SELECT content FROM fact WHERE name = ?", (name,)).fetchone()
         return None if row is None else str(row[0])
 
+    def facts(self) -> Mapping[str, str]:
+        """Return all facts about the study by name: its name, versions, and digests of what it used."""
+        return dict(self._rows("SELECT name, content FROM fact ORDER BY name"))
+
     def note(self, facts: Mapping[str, str]) -> None:
         """Store facts about the study."""
         with self._writing() as connection:
