@@ -55,7 +55,7 @@ SECTIONS = {
         "files",
         "limits",
     ),
-    "Explanation": ("concepts", "time", "study", "language/design", "compatibility", "graph-differences"),
+    "Explanation": ("concepts", "time", "study", "language/design", "peers", "compatibility", "graph-differences"),
     "Project": ("performance", "reliability", "mutants", "ARCHITECTURE", "CONTRIBUTING", "SECURITY"),
 }
 """The table of contents; the examples are added from their folders."""
