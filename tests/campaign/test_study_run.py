@@ -101,10 +101,16 @@ def test_an_interrupted_study_is_resumed_with_the_same_bytes(
         assert main(["study", "run", str(study), "--restart"]) == 2
     assert "continue with `robbdd study resume x.study`" in capsys.readouterr().err
     main(["study", "status", str(study)])
-    (status,) = capsys.readouterr().out.splitlines()
+    status, *others = capsys.readouterr().out.splitlines()
     finished = int(status.split()[1])
     assert 19 <= finished < COUNT
     assert status == f"fetching: {finished} of 40 executions, not in progress"
+    stored, worst = others
+    rows = csv.DictReader(expected.decode().splitlines())
+    violated = sum(row["scenario_verdict"] == "violated" for row in [*rows][: 16 * 3 : 3])
+    assert violated
+    assert stored.startswith(f"all executions: {16 - violated} of 16 hold (")
+    assert worst == f"worst clause: on-bench, {violated} violated and 0 unknown of 16"
     assert main(["study", "resume", str(study)]) == 1
     assert exported(study) == expected
 

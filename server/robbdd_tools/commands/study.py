@@ -28,6 +28,7 @@ from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.rate_lines import level_line, level_lines
+from robbdd_tools.commands.study_standing import standing
 from robbdd_tools.run.report import margin
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import store_beside
@@ -159,7 +160,7 @@ def _follow(run: StudyRun) -> int:
         for progress in run.progress():
             if monotonic() - shown >= PAUSE:
                 shown = monotonic()
-                print_note(_progress_words(progress))
+                print_note("; ".join((_progress_words(progress), *standing(run.store))))
     return ended_by
 
 
@@ -197,6 +198,8 @@ def _print_status(folder: Path) -> int:
         state = "in progress" if is_live else "not in progress"
         name, total = store.fact("name"), int(store.fact("total") or 0)
         print_line(f"{name}: {finished:,} of {total:,} executions, {state}")
+        for line in standing(store):
+            print_line(line)
     return OK
 
 
