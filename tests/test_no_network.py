@@ -51,6 +51,7 @@ COMMANDS = (
     "check .",
     "check graph.ttl foreign.jsonld",
     "graph pickplace.bdd",
+    "requirements pickplace.bdd",
     "graph graph.ttl",
     "graph foreign.jsonld",
     "gherkin pickplace.bdd -o out",

@@ -33,6 +33,7 @@ COMMANDS = (
     "view pickplace.bdd -o out/scene.png",
     "run pickplace.bddx --first 1 --store out/runs --json out/results.json",
     "runs --store out/runs",
+    "requirements pickplace.bdd --store out/runs",
     "judge latest pickplace.bddx --store out/runs",
     "replay latest --store out/runs",
     "compare latest latest --store out/runs",

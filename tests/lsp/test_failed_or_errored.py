@@ -12,7 +12,6 @@ from robbdd_tools.commands.failure_summary import failure_summary
 from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import digests_of
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.protocol.clauses import Text
@@ -21,6 +20,7 @@ from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, Scen
 from robbdd_tools.run.imported import read_results
 from robbdd_tools.run.junit import junit
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement
 
 NS = "https://example.org/t/"
 NAMES = ("on-bench", "in-tray")

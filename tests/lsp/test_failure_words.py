@@ -11,7 +11,6 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import digests_of
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.lsp.locations import Places
 from robbdd_tools.lsp.run_messages import for_client
 from robbdd_tools.lsp.run_request import RunText
@@ -20,6 +19,7 @@ from robbdd_tools.protocol.clauses import Fluent, Junction
 from robbdd_tools.protocol.messages import ClauseJudged, decode
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement
 
 NS = "https://example.org/t/"
 LOCATED = load_catalog().predicates["located-at"]

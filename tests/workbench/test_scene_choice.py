@@ -15,10 +15,10 @@ from robbdd_tools.cli import main
 from robbdd_tools.features.run_verdicts import Digests
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.lsp.client_settings import Settings
-from robbdd_tools.lsp.judged_scenarios import judged_scenario
 from robbdd_tools.lsp.run_options import BadSetting, RunOptions, select
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.run.user_code import refusal
+from robbdd_tools.workbench.judged_scenarios import judged_scenario
 from robbdd_tools.workbench.model import ModelErrors
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan

@@ -14,13 +14,13 @@ import robbdd_tools as robbdd
 from kit import EXAMPLES, corpus
 from robbdd_tools.cli import main
 from robbdd_tools.features.clause_results import clause_hints
-from robbdd_tools.features.describe import result_words
 from robbdd_tools.features.project_findings import findings_of
+from robbdd_tools.features.result_words import result_words
 from robbdd_tools.features.run_verdicts import Results, digests_of
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.lsp.client_settings import Settings
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.run.store import StoredRun
+from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.workbench.rerun import failed_in
 from robbdd_tools.workbench.substitution import substitutions_of
 

@@ -25,6 +25,7 @@ RUN = "number of a stored run, latest, or a run's folder"
 def add_commands_of_runs(commands: AddsCommands) -> tuple[argparse.ArgumentParser, ...]:
     """Add the commands, and return those that may execute users' code."""
     _add_runs(commands)
+    _add_requirements(commands)
     _add_compare(commands)
     _add_report(commands)
     return _add_replay(commands), _add_judge(commands), _add_export(commands)
@@ -35,6 +36,29 @@ def _add_runs(commands: AddsCommands) -> None:
     runs.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path())
     allow_store(runs)
     runs.set_defaults(command=_runs)
+
+
+def _add_requirements(commands: AddsCommands) -> None:
+    listed = commands.add_parser(
+        "requirements", help="coverage of requirements by scenarios and stored runs; CSV tables"
+    )
+    listed.add_argument("path", metavar="FILE|DIR|TABLE.csv", type=Path, help="models, or a table to import")
+    listed.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*")
+    listed.add_argument("-o", "--output", metavar="OUT", type=Path, help="write a CSV table; of a table, the model")
+    listed.add_argument("--links-only", action="store_true", help="only whether a scenario verifies each; no results")
+    listed.add_argument("--namespace", metavar="IRI", help="namespace of the requirements of a table")
+    listed.add_argument("--force", action="store_true", help="replace an existing model")
+    allow_store(listed)
+    listed.set_defaults(command=_requirements)
+
+
+def _requirements(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.list_requirements import import_requirements, list_requirements
+
+    if options.path.suffix.lower() == ".csv":
+        return import_requirements(options.path, options.output, options.namespace, overwrite=options.force)
+    paths = (options.path, *options.more)
+    return list_requirements(paths, options.store, options.output, links_only=options.links_only)
 
 
 def _add_replay(commands: AddsCommands) -> argparse.ArgumentParser:

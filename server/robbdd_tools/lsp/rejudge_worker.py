@@ -22,7 +22,6 @@ from robbdd_tools.base.memory import collect_rarely, collect_recent
 from robbdd_tools.base.source_texts import use_unsaved
 from robbdd_tools.features.run_verdicts import Digests, Judgement, RejudgedExecution, digests_of
 from robbdd_tools.lsp.framing import Edited, Execution, Rejudged, frame
-from robbdd_tools.lsp.judged_scenarios import judgement, refused_judgement
 from robbdd_tools.lsp.worker import Inbox
 from robbdd_tools.names.project import Project
 from robbdd_tools.protocol.judge_orders import JudgeOrder, StoredTrace
@@ -32,6 +31,7 @@ from robbdd_tools.protocol.spec_changes import AGAIN
 from robbdd_tools.run.readable import readable
 from robbdd_tools.run.store import NoSuchRun, RunStore
 from robbdd_tools.workbench.edited_executions import EditedExecution, edited_executions
+from robbdd_tools.workbench.judged_scenarios import judgement, refused_judgement
 from robbdd_tools.workbench.model import DraftFile
 from robbdd_tools.workbench.trace_judge import JudgeEnded, TraceJudge
 

@@ -6,7 +6,6 @@ import asyncio
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_progress import RunProgress
@@ -24,6 +23,7 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.run.consequences import Causes, Consequence
 from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import JudgedScenario

@@ -10,7 +10,6 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.active_run import ActiveRun
 from robbdd_tools.lsp.document_models import reason
-from robbdd_tools.lsp.judged_scenarios import project_of
 from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_follower import RunFollower
 from robbdd_tools.lsp.run_options import RunOptions
@@ -18,6 +17,7 @@ from robbdd_tools.lsp.run_request import PlannedRun, RunText, plan_run
 from robbdd_tools.lsp.trust import refuse_run
 from robbdd_tools.run.debugging import check_debugger, free_port
 from robbdd_tools.run.pictures import NoPictures, render_violations
+from robbdd_tools.workbench.judged_scenarios import project_of
 from robbdd_tools.workbench.rerun import NothingFailed
 from robbdd_tools.workbench.run import begin_run
 from robbdd_tools.workbench.time_estimate import estimate

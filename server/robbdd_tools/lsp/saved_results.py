@@ -13,7 +13,7 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.features.run_verdicts import JudgedScenario, as_json, from_json
-from robbdd_tools.lsp.found_runs import Seen
+from robbdd_tools.workbench.found_runs import Seen
 
 FOLDER = ".robbdd"
 FILE = "results.json"

@@ -28,7 +28,6 @@ from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
-from robbdd_tools.lsp.judged_scenarios import project_of
 from robbdd_tools.lsp.latest_wins import LatestWins
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
@@ -44,6 +43,7 @@ from robbdd_tools.lsp.user_errors import UserErrors, model_errors
 from robbdd_tools.lsp.workspace_diagnostics import WorkspaceDiagnostics
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.workbench.judged_scenarios import project_of
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.active_run import ActiveRun

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Results
-from robbdd_tools.lsp.found_runs import NOTHING_SEEN, Seen, read_store
 from robbdd_tools.lsp.saved_results import load_results, save_results
 from robbdd_tools.run.store import FOLDER, RunStore, store_beside
+from robbdd_tools.workbench.found_runs import NOTHING_SEEN, Seen, read_store
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.features.run_verdicts import JudgedScenario
-from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.stored_results import RUNNING, starts
+from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement, project_of, with_cause
 from robbdd_tools.workbench.judged_text import read_texts
 
 if TYPE_CHECKING:

@@ -1,0 +1,92 @@
+"""``robbdd requirements``: the coverage of requirements by scenarios and stored runs; tables of other tools."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from robbdd_tools.base.files import read_text
+from robbdd_tools.base.writing import replace_file
+from robbdd_tools.commands import FINDINGS, OK
+from robbdd_tools.commands.models import print_findings
+from robbdd_tools.commands.output import fail, print_line, print_note
+from robbdd_tools.features.rejudged_results import SIGNS
+from robbdd_tools.features.run_verdicts import NOTHING
+from robbdd_tools.workbench.model import load_all
+from robbdd_tools.workbench.named_files import NotAModel
+from robbdd_tools.workbench.requirement_table import (
+    NO_SCENARIO,
+    RequirementRow,
+    TableProblem,
+    model_text,
+    read_table,
+    requirement_rows,
+    stored_findings,
+    table_text,
+)
+from robbdd_tools.workbench.stored import store_at
+
+_IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`]*[/#:]")
+
+
+def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | None, *, links_only: bool) -> int:
+    """Print the coverage of the requirements of models, and write it as CSV to ``output``; return the exit code.
+
+    It is 1 unless each requirement is verified and, without ``links_only``, held in the last runs.
+    """
+    try:
+        model = load_all(paths)
+    except NotAModel as error:
+        return fail(str(error))
+    errors = [finding for finding in model.diagnostics if finding.is_error]
+    if errors:
+        print_findings(errors, print_note)
+        return FINDINGS
+    rows = requirement_rows(model, NOTHING if links_only else stored_findings(store_at(paths[0], store)))
+    if not rows:
+        print_note("robbdd: no requirements: declare one by 'Requirement name { \"…\" }'")
+    for row in rows:
+        print_line(_line(row, links_only=links_only))
+    if output is not None:
+        try:
+            replace_file(output, table_text(rows))
+        except OSError as error:
+            return fail(f"cannot write {output}: {error.strerror}")
+    missing = [row for row in rows if row.verdict == NO_SCENARIO or (not links_only and row.verdict != "holds")]
+    proved = "verified by a scenario" if links_only else "shown by the last runs"
+    print_line(f"{len(rows) - len(missing)} of {len(rows)} requirements {proved}")
+    return FINDINGS if missing else OK
+
+
+def import_requirements(table: Path, output: Path | None, namespace: str | None, *, overwrite: bool) -> int:
+    """Write the requirements of a CSV table as a model; return the exit code."""
+    if output is None or namespace is None:
+        return fail(f"to import {table}, name the model (-o NEEDS.bdd) and its namespace (--namespace IRI)")
+    if not _IRI.fullmatch(namespace):
+        return fail(f"'{namespace}' is no IRI: write one such as https://example.org/needs/")
+    text = read_text(table)
+    if not isinstance(text, str):
+        return fail(f"{table}: {text.reason}")
+    if output.exists() and not overwrite:
+        return fail(f"{output} exists: add --force to replace it")
+    try:
+        rows = read_table(table, text)
+        replace_file(output, model_text(rows, namespace))
+    except TableProblem as error:
+        return fail(str(error))
+    except OSError as error:
+        return fail(f"cannot write {output}: {error.strerror}")
+    print_line(f"{len(rows)} requirement{'' if len(rows) == 1 else 's'} in {output}")
+    return OK
+
+
+def _line(row: RequirementRow, *, links_only: bool) -> str:
+    label = f"{row.name} ({row.identifier})" if row.identifier else row.name
+    if not row.scenarios:
+        return f"✗ {label}: {NO_SCENARIO}"
+    scenarios = ", ".join(row.scenarios)
+    if links_only:
+        return f"✔ {label}: {scenarios}"
+    sign = SIGNS.get(row.verdict, "?")
+    return f"{sign} {label}: {row.verdict}, {row.held} of {row.executions} executions ({scenarios})"
