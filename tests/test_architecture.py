@@ -338,3 +338,11 @@ def opens(path: Path) -> Iterator[str]:
 def test_files_are_read_and_written_in_one_place() -> None:
     found = {module: list(opens(path)) for module, path in modules() if module not in OPENS_ITSELF}
     assert {module: calls for module, calls in found.items() if calls} == {}
+
+
+def test_the_language_server_starts_without_what_plans_and_executes_runs() -> None:
+    named = "print(*(name for name in sys.modules if name.startswith('robbdd_tools.')))"
+    loaded = loaded_after(f"from robbdd_tools.lsp.handlers import create_server\ncreate_server()\n{named}")
+    assert "robbdd_tools.lsp.handlers" in loaded
+    later = ("campaign", "gherkin.preview", "run.scheduler", "workbench.comparison", "workbench.plan", "workbench.run")
+    assert loaded.isdisjoint(f"robbdd_tools.{name}" for name in later)

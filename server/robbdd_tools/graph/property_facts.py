@@ -16,13 +16,13 @@ from robbdd_tools.base.property_conditions import TRUE, Properties, PropertyCond
 from robbdd_tools.base.property_values import ELEMENT, NUMBER, TEXT, TRUTH, PropertyValue, quantity_value
 from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
-from robbdd_tools.graph.write.imported_graphs import ImportedGraph, imported_graph
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import MAX_COPIES
 
 if TYPE_CHECKING:
     from rdflib.term import Node
 
+    from robbdd_tools.graph.write.imported_graphs import ImportedGraph
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
 
@@ -77,6 +77,8 @@ def facts(snapshot: Snapshot, uri: str) -> Iterator[Fact]:
             if isinstance(placed.declaration.tree, tree.ElementSet | tree.SimilarSet):
                 yield from declared_facts(file, placed)
     if any(graph_format(link.uri) for file in closure for link in file.imports):
+        from robbdd_tools.graph.write.imported_graphs import imported_graph
+
         elements = {definition.iri or "" for file in closure for definition in file.definitions.values()}
         yield from imported_facts(imported_graph(snapshot, uri), elements)
 

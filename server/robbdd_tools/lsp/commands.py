@@ -19,11 +19,8 @@ from robbdd_tools.base.source_texts import unsaved_source
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.features.clause_results import clause_diagnostics
-from robbdd_tools.gherkin.feature_files import write_features
-from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.document_models import feature_plan, reason
-from robbdd_tools.lsp.runs import cancel_run, estimate_run, start_run
 from robbdd_tools.lsp.server import RobbddServer
 
 if TYPE_CHECKING:
@@ -44,28 +41,38 @@ def register_commands(server: RobbddServer) -> None:
 def _register_runs(server: RobbddServer) -> None:
     @server.command(RUN)
     async def run(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
-        return await start_run(ls, _checked(RUN, target))
+        return await _start(ls, _checked(RUN, target))
 
     @server.command(RERUN)
     async def rerun(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
-        return await start_run(ls, _checked(RERUN, target), failed=True)
+        return await _start(ls, _checked(RERUN, target), failed=True)
 
     @server.command(RECORD)
     async def record(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
-        return await start_run(ls, _checked(RECORD, target), record=True)
+        return await _start(ls, _checked(RECORD, target), record=True)
 
     @server.command(ESTIMATE)
     async def estimate(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
+        from robbdd_tools.lsp.runs import estimate_run
+
         return await estimate_run(ls, _checked(ESTIMATE, target))
 
     @server.command(CANCEL)
     def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
-        cancel_run(ls)
+        if ls.run is not None:
+            ls.run.cancel()
 
     @server.feature(types.WINDOW_WORK_DONE_PROGRESS_CANCEL)
     def cancel_progress(ls: RobbddServer, params: types.WorkDoneProgressCancelParams) -> None:
         if ls.run is not None and ls.run.progress == params.token:
-            cancel_run(ls)
+            ls.run.cancel()
+
+
+async def _start(ls: RobbddServer, target: dict[str, Any], **options: bool) -> dict[str, Any]:
+    # What executes scenarios is imported with the first run, so that the server starts sooner.
+    from robbdd_tools.lsp.runs import start_run
+
+    return await start_run(ls, target, **options)
 
 
 def _checked(command: str, target: Any) -> dict[str, Any]:
@@ -120,6 +127,8 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
 
     Return the URIs of the features.
     """
+    from robbdd_tools.gherkin.feature_files import write_features
+
     path = uri_to_path(uri)
     if path is None:
         ls.warn("save the model first: its features are written to its folder")
@@ -135,6 +144,8 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
 
 async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
     """Write functions for the clauses that the catalog cannot judge to a file in the model's folder. Return its URI."""
+    from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
+
     path = uri_to_path(uri)
     if path is None:
         ls.warn("save the model first: its steps are written to its folder")

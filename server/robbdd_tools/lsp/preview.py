@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.gherkin.preview import MAX_SHOWN, Preview, preview
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.last_valid import LastValid
 from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
+    from robbdd_tools.gherkin.preview import Preview
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.project import Snapshot
 
@@ -32,6 +32,8 @@ class Previews:
 
     def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
         """Return the answer to a request. For a text with errors, this is the last preview without errors."""
+        from robbdd_tools.gherkin.preview import MAX_SHOWN, preview
+
         uri = asked.text("uri")
         scenario = asked.optional_text("scenario")
         most = asked.optional_number("most") or MAX_SHOWN

@@ -18,7 +18,6 @@ from robbdd_tools.lsp.stored_runs import answered
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.run.clause_history import ClauseRun, clause_history
 from robbdd_tools.run.json_documents import summary
-from robbdd_tools.workbench.comparison import compare
 from robbdd_tools.workbench.judged_text import read_texts
 
 if TYPE_CHECKING:
@@ -98,6 +97,8 @@ def _digests(run: StoredRun, iri: str) -> set[str]:
 
 
 def _compared(store: RunStore, before: str, after: str) -> dict[str, Any]:
+    from robbdd_tools.workbench.comparison import compare
+
     one, other = store.find(before), store.find(after)
     found = compare(one, other)
     return {"before": summary(one), "after": summary(other), "flipped": found.flipped, **asdict(found)}

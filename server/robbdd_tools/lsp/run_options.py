@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING, Any, cast
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.monitor.without_physics import KINEMATIC
-from robbdd_tools.workbench.choice import Choice, Listed
-from robbdd_tools.workbench.model import ModelErrors, read_instances
-from robbdd_tools.workbench.plan import Selection
-from robbdd_tools.workbench.rerun import Failed, NothingFailed
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
+    from robbdd_tools.workbench.choice import Choice, Listed
+    from robbdd_tools.workbench.plan import Selection
+    from robbdd_tools.workbench.rerun import Failed
 
 NO_SCENARIO_FAILED = "no scenario failed"
 
@@ -119,6 +118,10 @@ def select(
     ``results`` are the results of earlier runs. Raises ``NothingFailed`` and, for a ``scenex`` that cannot be
     used, ``NotAModel``, ``ModelErrors`` or ``SceneChoiceError``, or ``BadSetting`` if a setting names it.
     """
+    from robbdd_tools.workbench.choice import Choice, Listed
+    from robbdd_tools.workbench.model import read_instances
+    from robbdd_tools.workbench.plan import Selection
+
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
     seed, repeat = options.seed, options.repeat
@@ -159,6 +162,8 @@ def select(
 
 
 def _instances_of(defaults: RunDefaults) -> tuple[SceneInstance, ...]:
+    from robbdd_tools.workbench.model import ModelErrors, read_instances
+
     try:
         return read_instances(defaults.scenex)
     except RobbddError as error:
@@ -168,6 +173,9 @@ def _instances_of(defaults: RunDefaults) -> tuple[SceneInstance, ...]:
 
 def _failed(failed: Sequence[JudgedScenario]) -> Failed:
     """Return the selection that executes failed scenarios again, with the seed of their latest run."""
+    from robbdd_tools.workbench.choice import Choice, Listed
+    from robbdd_tools.workbench.rerun import Failed, NothingFailed
+
     if not failed:
         raise NothingFailed(NO_SCENARIO_FAILED)
     listed = [
@@ -191,6 +199,8 @@ def _failed(failed: Sequence[JudgedScenario]) -> Failed:
 
 
 def _listed(entry: Mapping[str, Any]) -> Listed:
+    from robbdd_tools.workbench.choice import Listed
+
     numbers = entry.get("variations")
     return Listed(str(entry["variant"]), None if numbers is None else frozenset(numbers), entry.get("execution"))
 

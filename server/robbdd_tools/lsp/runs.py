@@ -56,12 +56,6 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
         ls.run = None
 
 
-def cancel_run(ls: RobbddServer) -> None:
-    """Cancel the run in progress, if any."""
-    if ls.run is not None:
-        ls.run.cancel()
-
-
 async def estimate_run(ls: RobbddServer, argument: dict[str, Any]) -> dict[str, Any]:
     """Return the estimated duration of a run, or the reason why there would be no run. Nothing is executed."""
     try:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.campaign.study_run import has_results, study_folder
 from robbdd_tools.features.outline import outline
 
 if TYPE_CHECKING:
@@ -21,6 +20,8 @@ SHOW_RESULTS = "robbdd.showStudyResults"
 
 def study_lenses(ls: RobbddServer, snapshot: Snapshot, uri: str) -> list[types.CodeLens]:
     """Return the lenses at the name of a study: to begin it or, if it has been begun, to continue and to show it."""
+    from robbdd_tools.campaign.study_run import has_results, study_folder
+
     path = uri_to_path(uri)
     studies = outline(snapshot, uri)
     if not ls.runs_studies or path is None or not studies:

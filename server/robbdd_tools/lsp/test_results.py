@@ -14,13 +14,13 @@ from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.run_verdicts import Digests, JudgedScenario, digests_of
 from robbdd_tools.features.stories import stories_in, story_files
 from robbdd_tools.lsp.parameters import Parameters
-from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.run.imported import ImportedScenario
 
 KEPT = "robbdd/testResults"
 IMPORT = "robbdd/importResults"
@@ -88,6 +88,8 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
 
 def _read(uri: str) -> list[ImportedScenario] | str:
     """Return the contents of a results file, or the reason why it cannot be read."""
+    from robbdd_tools.run.imported import BrokenResults, read_results
+
     path = uri_to_path(uri)
     text = Unreadable("file-missing", f"'{uri}' is not a file") if path is None else read_text(path)
     if isinstance(text, Unreadable):

@@ -19,7 +19,6 @@ from robbdd_tools.lsp.document_models import feature_plan, reason
 from robbdd_tools.lsp.locations import Places, places_of
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.clause_places import clauses_in
-from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.run.listing import ListedScenario
 
 TESTS = "robbdd/tests"
 MAX_SCENARIOS = 10_000
@@ -130,6 +130,8 @@ def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, f
     places = places_of(snapshot, convert, uri)
     # Show the name of a behaviour or an event in the text instead of its IRI.
     names = {clause.iri: clause.name for file in places.uris for clause in clauses_in(snapshot, file)}
+    from robbdd_tools.run.listing import listed_scenarios
+
     listed = listed_scenarios(model, Iri(variant), first, most)
     tests = [_scenario(each, places.rows.get((variant, each.number)), places, names) for each in listed]
     return {"problem": None, "files": places.uris, "tests": tests}

@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
 from robbdd_tools.lsp.run_options import RunOptions
-from robbdd_tools.lsp.run_request import plan_run
-from robbdd_tools.run.user_code import UserCodeRefused
-from robbdd_tools.workbench.run import check_user_code
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -33,6 +30,10 @@ def forbid_user_code() -> None:
 
 async def refuse_run(ls: RobbddServer, argument: dict[str, Any]) -> str:
     """Return the reason why a requested run is refused, with the places of its users' code if it has any."""
+    from robbdd_tools.lsp.run_request import plan_run
+    from robbdd_tools.run.user_code import UserCodeRefused
+    from robbdd_tools.workbench.run import check_user_code
+
     try:
         asked = RunOptions.of(argument)
         first = min(asked.first or _SEARCHED, _SEARCHED)
