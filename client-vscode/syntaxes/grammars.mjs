@@ -148,7 +148,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   },
   { match: String.raw`(?<![\p{L}\p{N}_-])pred(?=\s*\()`, name: `${PHRASE}.predicate.robbdd` },
   { match: String.raw`(?<![\p{L}\p{N}_-])${NAME}(?=\s*=)`, name: "variable.parameter.robbdd" },
-  phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at", "opens", "closes", "pushes", "hands over"),
+  phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at", "opens", "closes", "pushes", "hands over", "moves to"),
   phrases(`${PHRASE}.event`, "occurs"),
   { match: String.raw`(?<=>)\s*(at|to)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
   phrases(`${WORD}.time`, "within", "seconds", "before", "after", "at some time", "from", "until", "whenever", "the first", "the last", "every"),

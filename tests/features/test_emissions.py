@@ -69,7 +69,17 @@ def test_hover_and_completion_know_emissions() -> None:
     told = shown(TEXT.replace("emits pick-end", "emits pick-$0end"))
     assert told == "When the behaviour emits its own event `pick-end`, the event `in-hand` of the model occurs."
     assert labels(TEXT.replace("emits pick-end", "emits $0pick-end")) == [
-        *("close-start", "close-end", "hand-over-start", "laid-down", "hand-over-end", "open-start", "open-end"),
+        *(
+            "close-start",
+            "close-end",
+            "hand-over-start",
+            "laid-down",
+            "hand-over-end",
+            "move-start",
+            "move-end",
+            "open-start",
+            "open-end",
+        ),
         *("pick-start", "pick-end", "place-start", "place-end", "push-start", "push-end"),
     ]
     offered = labels(TEXT.replace("emits pick-end as <in-hand>", "emits pick-end as <$0>"))

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.composition import load_robot
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.mobile_base import base_of
 from world.test_kinematics import PUBLISHED
 
 if TYPE_CHECKING:
@@ -105,7 +107,23 @@ def frames(name: str) -> list[FloatArray]:
 
 
 def test_every_arm_of_the_catalog_has_published_masses() -> None:
-    assert {name for name, _, _ in ARMS} == set(load_catalog().robots)
+    fixed = {name for name, robot in load_catalog().robots.items() if base_of(robot) is None}
+    assert {name for name, _, _ in ARMS} == fixed
+
+
+def test_the_mobile_panda_carries_the_same_arm_as_the_fixed_one() -> None:
+    fixed, mobile = (load_catalog().robots[name] for name in ("franka-panda", "mobile-panda"))
+    assert (mobile.home, mobile.velocity_limits, mobile.torque_limits, mobile.stroke) == (
+        *(fixed.home, fixed.velocity_limits, fixed.torque_limits),
+        fixed.stroke,
+    )
+    one, other = (load_robot(robot).compile() for robot in (fixed, mobile))
+    for body in range(1, one.nbody):
+        name = one.body(body).name
+        assert one.body(name).mass == other.body(f"panda_{name}").mass
+        assert (one.body(name).inertia == other.body(f"panda_{name}").inertia).all()
+    lower = arm_of(mobile).forward(np.array(JOINTS))[0] - arm_of(fixed).forward(np.array(JOINTS))[0]
+    assert lower == pytest.approx([0.0, 0.0, 0.8])
 
 
 @pytest.mark.parametrize(("name", "links", "reach"), ARMS)

@@ -17,6 +17,7 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.composition import COLUMN, load_robot
+from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.motion import ToolPose, frame_of
 from robbdd_tools.world.reaching import Obstruction
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
@@ -105,9 +106,12 @@ def test_neighbours_and_the_parts_of_a_gripper_are_left_out_and_nothing_else(nam
     child = load_robot(robot)
     name_bodies(child)
     apart, beside = pairs_apart(child, robot)
-    links = [str(body.name) for body in child.bodies[1 : len(robot.joints) + 2]]
+    bodies = [str(body.name) for body in child.bodies[1:]]
+    foot = bodies.index(str(child.joint(robot.joints[0]).parent.name)) - 1
+    links = bodies[foot : foot + len(robot.joints) + 1]
     chain = list(pairwise(links)) + list(zip(links, links[2:], strict=False))
     assert set(chain) <= set(apart)
     far = [(one, other) for i, one in enumerate(links) for other in links[i + 3 :]]
     assert not set(far) & set(apart)
-    assert beside == links[:3]
+    # Only fixed arms have a pedestal that they could touch.
+    assert beside == ([] if base_of(robot) else links[:3])

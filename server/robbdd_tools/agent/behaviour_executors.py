@@ -9,6 +9,7 @@ import numpy as np
 
 from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
+from robbdd_tools.world.drive_base import DriveBase
 from robbdd_tools.world.errors import BehaviourError, SceneError
 from robbdd_tools.world.external_behaviour import run_external_behaviour
 from robbdd_tools.world.open_close import OpenClose, opening_by_handle
@@ -97,6 +98,12 @@ class BehaviourExecutors:
             opening_by_handle(self._simulation.world.cast, call.element("object"))
         if call.behaviour == "push" and not self.is_users and not self._simulation.has_physics:
             raise SceneError("'push' needs physics: nothing is pushed in the kinematic world")
+        if (
+            call.behaviour == "move-to"
+            and not self.is_users
+            and self.controller(call.element("agent")).robot.mobile is None
+        ):
+            raise SceneError(f"'{call.element('agent')}' has no mobile base: only mobile robots move to a workspace")
         if call.behaviour == "hand-over" and len(set(call.agents)) < len(call.agents):
             raise SceneError(f"'{call.element('agent')}' cannot hand over to itself")
         places = call.places if "workspace" in call.arguments else ()
@@ -130,6 +137,8 @@ class BehaviourExecutors:
                 return OpenClose(controller, self._emit).close(call.element("object"))
             case "push":
                 return PushObject(controller, self._emit).push(call.element("object"), call.places)
+            case "move-to":
+                return DriveBase(controller, self._emit).move_to(self._in_any_order(call))
             case "hand-over":
                 receiver = self.controller(call.element("receiver"))
                 return HandOver(controller, receiver, self._emit).hand_over(call.element("object"))

@@ -27,7 +27,7 @@ TIMED = "timed-pick-place"
 
 PLANNED = Executor(
     DEFAULT,
-    frozenset({"pick", "place", "pick-place", "open", "close", "push", "hand-over"}),
+    frozenset({"pick", "place", "pick-place", "open", "close", "push", "hand-over", "move-to"}),
     "Plans each path within the limits of joints and tool, turns the fingers to the sides of the object, and checks "
     "its grip. A behaviour that cannot go on fails.",
 )

@@ -19,6 +19,7 @@ from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, pair_stiff, rank_by_friction
+from robbdd_tools.world.mobile_base import base_of, drive_by_servos
 from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
@@ -74,7 +75,9 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
         raise SceneError(f"the scene has no agent '{actor}'")
     base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
     seed = seed if cast.seed is None else cast.seed
-    arranged = arrange(scene, cast, base, np.random.default_rng(seed))
+    name = actor if actor is not None else next(iter(bases), None)
+    is_mobile = name is not None and base_of(cast.agents[name]) is not None
+    arranged = arrange(scene, cast, base, np.random.default_rng(seed), is_mobile=is_mobile)
     model = compile_world(cast, bases, arranged.poses)
     return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
 
@@ -223,22 +226,34 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
         if geom.contype or geom.conaffinity:
             geom.contype = 2 << index
             geom.conaffinity = THINGS | robots
+    mobile = base_of(robot)
+    if mobile is not None:
+        drive_by_servos(child, mobile)
+    driven = robot.joints if mobile is None else (*robot.joints, *mobile.joints)
     for servo in child.actuators:
-        if servo.target in robot.joints:
+        if servo.target in driven:
             # Its control input is the speed of the target: a target that jumps with every tick would shake the arm.
             servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
             servo.ctrllimited = False
     turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
     _attach(spec, child, f"{name}/", frame)
+    pairs = apart
+    if mobile is None:
+        _add_column(spec, name, base, THINGS | robots)
+        pairs = [*apart, *((COLUMN, body) for body in beside_base)]
+    for one, other in pairs:
+        spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
+
+
+def _add_column(spec: Any, name: str, base: Pose, touches: int) -> None:
+    """Add the pedestal of a fixed arm; ``touches`` are the collision groups (bits) that it collides with."""
     half = (base.position[2] - FLOOR) / 2
     x, y, z = base.position
     foot = spec.worldbody.add_body(name=f"{name}/{COLUMN}", pos=[x, y, z - half])
     column = foot.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0])
-    column.contype, column.conaffinity = 0, THINGS | robots
+    column.contype, column.conaffinity = 0, touches
     column.rgba = [0.45, 0.47, 0.50, 1.0]
-    for one, other in (*apart, *((COLUMN, body) for body in beside_base)):
-        spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
 
 
 def _pull_from(spec: Any, pads: list[str], distance: float) -> None:

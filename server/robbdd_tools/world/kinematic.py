@@ -54,6 +54,7 @@ class KinematicSimulation(Simulation):
         # The constructor of the base class commands the home positions.
         self._goals: dict[str, FloatArray] = {}
         self._controls: dict[str, float] = {}
+        self._bases: dict[str, FloatArray] = {}
         super().__init__(world)
         if self.belts:
             raise SceneError("a conveyor needs physics: the kinematic world does not move what lies on it")
@@ -69,6 +70,8 @@ class KinematicSimulation(Simulation):
         for robot in self.robots.values():
             # Nothing lags behind, so no target leads.
             robot.lead = np.zeros_like(robot.lead)
+            if robot.mobile is not None:
+                robot.mobile.lead = 0.0
 
     @property
     def has_physics(self) -> bool:
@@ -87,6 +90,11 @@ class KinematicSimulation(Simulation):
         self._goals[robot.name] = np.array(joints, dtype=float)
         self._controls[robot.name] = opening
 
+    def drive(self, robot: Robot, pose: FloatArray) -> None:
+        """Set where a mobile base is after the next tick."""
+        assert robot.mobile is not None, "only mobile bases drive"
+        self._bases[robot.name] = robot.mobile.positions_at(pose)
+
     def targets(self, robot: Robot) -> FloatArray:
         """Return the joint positions (rad, shape (n,)) to which the arm moves."""
         return self._goals[robot.name].copy()
@@ -95,6 +103,8 @@ class KinematicSimulation(Simulation):
         began = perf_counter()
         for name, robot in self.robots.items():
             self.data.qpos[robot.joints] = self._goals[name]
+            if robot.mobile is not None and name in self._bases:
+                self.data.qpos[robot.mobile.joints] = self._bases[name]
             self._move_fingers(robot)
         mujoco.mj_kinematics(self.model, self.data)
         for name, robot in self.robots.items():

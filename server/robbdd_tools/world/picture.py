@@ -27,6 +27,8 @@ LABEL = 0.012
 """Radius (m) of a label's dot."""
 OVERVIEW = (2.15, 128.0, -36.0)
 """Distance (m), azimuth and elevation (degrees) of the camera for a whole scene."""
+WIDER = 1.35
+"""Distance of the camera from a hall with mobile robots, as a multiple of its size."""
 CLOSE, DOWN = 1.1, -30.0
 """Distance (m) and elevation (degrees) of the camera for one object."""
 AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
@@ -109,6 +111,12 @@ class Camera:
         tables = [data.body(name).xpos for name in self._simulation.world.cast.tables]
         self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
         self._view.distance, self._view.azimuth, self._view.elevation = OVERVIEW
+        starts = [robot.mobile.start.position for robot in self._simulation.robots.values() if robot.mobile is not None]
+        if starts:
+            # Robots drive between the tables and where they start.
+            low, high = np.min([*tables, *starts], axis=0), np.max([*tables, *starts], axis=0)
+            self._view.lookat[:] = (low + high) / 2
+            self._view.distance = max(OVERVIEW[0], WIDER * float(np.linalg.norm(high - low)))
 
     def _look_at(self, data: Any, name: str) -> None:
         """Choose the first direction with a free view of the object."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
+from robbdd_tools.catalog.api import ObjectModel, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
@@ -17,11 +17,12 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
+from robbdd_tools.world.working_area import field_before as field_before
+from robbdd_tools.world.working_area import place_before
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.protocol.specs import SceneSpec
     from robbdd_tools.world.scene import Cast
 
@@ -57,7 +58,7 @@ class _Field:
     """A rectangle to draw positions from: centre and half edges (m, world frame), height of objects there (m).
 
     ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` are distances to other objects and bins (m); in a bin
-    there is no ``wall_gap``.
+    there is no ``wall_gap``. ``base`` is that of the robot that works there.
     """
 
     center: tuple[float, float]
@@ -66,6 +67,7 @@ class _Field:
     skew: float
     gap: float
     wall_gap: float | None
+    base: Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +121,10 @@ def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
     )[side]
 
 
-def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> Arrangement:
-    """Lay the objects of a scene out for an agent at ``base``.
+def arrange(
+    scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator, *, is_mobile: bool = False
+) -> Arrangement:
+    """Lay the objects of a scene out for an agent at ``base``, or for one that drives from there.
 
     Raises ``SceneError`` for a place that does not exist or if there is not enough room.
     """
@@ -143,6 +147,10 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
         elif model.joint is not None and name not in poses:
             raise SceneError(f"'{name}' hangs on a joint: give it a pose in the .scenex", origin=cast.origin(name))
     ways = list(ways_of_parts(cast.objects, poses))
+
+    def works_at(place: Pose, model: ObjectModel) -> Pose:
+        return place_before(base, place, model) if is_mobile and model.region is not None else base
+
     taken: list[_Disc] = []
     dropped: list[Ball] = []
     resampled = 0
@@ -154,12 +162,12 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
             pose, rejected = _apart_from(cast, name, placed[name], taken)
         elif name in cast.drops:
             place = partial(
-                _place_above, next(_fields(scene, cast, poses, base, name)), base, walls, footprint(model), rng
+                _place_above, next(_fields(scene, cast, poses, works_at, name)), walls, footprint(model), rng
             )
             pose, ball, rejected = drop(name, model, cast.drops[name], place, dropped, rng)
             dropped.append(ball)
         else:
-            pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
+            pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, works_at, name)), taken, walls, rng)
         taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
         poses[name] = pose
         resampled += rejected
@@ -178,40 +186,6 @@ def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple
             return pose, attempt - 1
         pose = again
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
-
-
-def field_before(
-    base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return centre and half edges (m) of the part of a table in front of a robot's base, ``None`` if there is none.
-
-    ``area`` (m) is ahead of the base from, to; to its left from, to.
-    """
-    if model.region is None:
-        return None
-    if abs(base.position[1] - table.position[1]) > model.region.half[1]:
-        return _field_before_end(base, table, model.region, area)
-    side = 1.0 if table.position[0] >= base.position[0] else -1.0
-    (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
-    left, ahead, _ = (at + offset for at, offset in zip(table.position, model.region.center, strict=True))
-    x = _overlap(base.position[0] + near, base.position[0] + far, left, model.region.half[0])
-    y = _overlap(base.position[1] + low, base.position[1] + high, ahead, model.region.half[1])
-    if x is None or y is None:
-        return None
-    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
-
-
-def _field_before_end(
-    base: Pose, table: Pose, region: Region, area: Numbers
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the same for a base beyond the left or right end of a table, whose forward direction is along y."""
-    side = 1.0 if table.position[1] >= base.position[1] else -1.0
-    (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
-    y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
-    x = _overlap(base.position[0] + low, base.position[0] + high, table.position[0], region.half[0])
-    if x is None or y is None:
-        return None
-    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
 
 
 def bearing(base: Pose, x: float, y: float) -> float:
@@ -241,8 +215,17 @@ def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
     return {table: tuple(names) for table, names in chosen.items()}
 
 
-def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str) -> Iterator[_Field]:
-    """Yield the areas for an object, best first; raises ``SceneError`` if there are none."""
+def _fields(
+    scene: SceneSpec,
+    cast: Cast,
+    poses: Mapping[str, Pose],
+    works_at: Callable[[Pose, ObjectModel], Pose],
+    name: str,
+) -> Iterator[_Field]:
+    """Yield the areas for an object, best first; raises ``SceneError`` if there are none.
+
+    ``works_at`` returns the robot's base when it works at an object.
+    """
     carrier = cast.tables[0]
     region = cast.objects[carrier].region
     if (workspace := scene.places.get(name)) is not None:
@@ -254,23 +237,23 @@ def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose,
     if region is None:
         raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
     x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
-    half = region.half
+    half, base = region.half, works_at(pose, model)
     if model.joint is not None:
         (x, y, z), half = pose.at(region.center).position, _flat(half, pose.yaw)
     bottom = z - region.half[2]
     if can_move(model):
         inner = (half[0] - radius, half[1] - radius)
         if region.walled:
-            yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
+            yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base)
         else:
-            yield _Field((x, y), inner, bottom, pi, FINGER_GAP, None)
-        yield _Field((x, y), inner, bottom, pi, TOUCHING, None)
+            yield _Field((x, y), inner, bottom, pi, FINGER_GAP, None, base)
+        yield _Field((x, y), inner, bottom, pi, TOUCHING, None, base)
         return
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
     if area is None:
         raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
-    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)
-    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING)
+    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base)
+    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base)
 
 
 def _flat(half: Vector, yaw: float) -> Vector:
@@ -286,7 +269,6 @@ def _draw(
     name: str,
     model: ObjectModel,
     fields: list[_Field],
-    base: Pose,
     taken: list[_Disc],
     walls: list[tuple[Pose, ObjectModel]],
     rng: np.random.Generator,
@@ -301,20 +283,20 @@ def _draw(
             x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
             clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
             apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
-            if clear and apart and abs(bearing(base, x, y)) <= BEARING:
+            if clear and apart and abs(bearing(field.base, x, y)) <= BEARING:
                 return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
             rejected += 1
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
 
 
 def _place_above(
-    field: _Field, base: Pose, walls: list[tuple[Pose, ObjectModel]], radius: float, rng: np.random.Generator
+    field: _Field, walls: list[tuple[Pose, ObjectModel]], radius: float, rng: np.random.Generator
 ) -> tuple[float, float] | None:
     """Draw a position above a field, or return ``None`` if it is above a bin or behind the robot."""
     dx, dy = rng.uniform(-1.0, 1.0, 2)
     x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
     free = all(_apart(x, y, radius + TOUCHING, pose, other) for pose, other in walls)
-    return (x, y) if free and abs(bearing(base, x, y)) <= BEARING else None
+    return (x, y) if free and abs(bearing(field.base, x, y)) <= BEARING else None
 
 
 def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
@@ -330,8 +312,3 @@ def _reach(model: ObjectModel, index: int) -> float:
     shape = model.shapes[index]
     corner = hypot(shape.size[0], shape.size[1]) if shape.kind is ShapeKind.BOX else shape.size[0]
     return hypot(shape.position[0], shape.position[1]) + corner
-
-
-def _overlap(low: float, high: float, middle: float, half: float) -> tuple[float, float] | None:
-    start, end = max(low, middle - half), min(high, middle + half)
-    return (start, end) if start < end else None

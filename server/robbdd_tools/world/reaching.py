@@ -157,7 +157,7 @@ class ReachSampler:
     def _margin(self, robot: Robot, name: str, state: FloatArray) -> float:
         self._data.qpos[:] = state
         mujoco.mj_kinematics(self._simulation.model, self._data)
-        arm = arm_of(robot.model)
+        arm, robot = arm_of(robot.model), robot.standing_in(self._data)
         try:
             clear = [a.joints for a in approaches(self._simulation, robot, name, self._data) if a.depth == 0.0]
         except BehaviourError:

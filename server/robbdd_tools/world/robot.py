@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from copy import copy
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.mobile_base import BaseState, base_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -26,6 +28,9 @@ class Robot:
         self.name = name
         self.model = robot
         self.base = world.bases[name]
+        """The pose of the arm's frame, to which tool poses refer; that of a mobile base changes."""
+        mobile = base_of(robot)
+        self.mobile = None if mobile is None else BaseState(world, name, mobile)
         joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
         self.joints = np.array([joint.qposadr[0] for joint in joints])
         self.speeds = np.array([joint.dofadr[0] for joint in joints])
@@ -49,3 +54,16 @@ class Robot:
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
         """Seconds by which a joint's target leads to compensate for the servo's damping, shape (n,)."""
+
+    def follow_base(self, data: Any) -> None:
+        """Note where a mobile base is in a state of the engine."""
+        if self.mobile is not None:
+            self.base = self.mobile.frame_at(data.qpos[self.mobile.joints])
+
+    def standing_in(self, data: Any) -> Robot:
+        """Return the robot with its base where it is in another state of the engine."""
+        if self.mobile is None:
+            return self
+        found = copy(self)
+        found.follow_base(data)
+        return found

@@ -70,6 +70,7 @@ class Simulation:
         self._ctrl: FloatArray = self.data.ctrl
         self._act: FloatArray = self.data.act
         motors = [robot.motors for robot in self.robots.values()]
+        motors += [robot.mobile.motors for robot in self.robots.values() if robot.mobile is not None]
         self._servos = np.concatenate([*motors, np.empty(0, dtype=int)]).astype(int)
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
@@ -183,6 +184,8 @@ class Simulation:
         """Record a sample of the current world."""
         # Positions in the engine's data lag by one step until recomputed.
         mujoco.mj_kinematics(self.model, self.data)
+        for robot in self.robots.values():
+            robot.follow_base(self.data)
         self._sense()
         rows = self.recorder.append(self.time, self._qpos, self._grips.held)
         for row, (position, rotation) in zip(rows, self._tools, strict=True):
@@ -237,6 +240,12 @@ class Simulation:
         self._ctrl[robot.motors] = (joints - self._act[robot.targets]) / TICK
         leaks = robot.name in self._grips.leaking
         self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
+
+    def drive(self, robot: Robot, pose: FloatArray) -> None:
+        """Move the target of a mobile base to a pose (x m, y m, yaw rad) within one tick, world frame."""
+        assert robot.mobile is not None, "only mobile bases drive"
+        goal = robot.mobile.positions_at(pose)
+        self._ctrl[robot.mobile.motors] = (goal - self._act[robot.mobile.targets]) / TICK
 
     def open_fingers(self, robot: Robot, data: Any, control: float | None = None) -> None:
         """Put a robot's fingers into the open position in ``data``: the start, or a trial state.

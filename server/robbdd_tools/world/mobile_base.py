@@ -1,0 +1,179 @@
+"""Mobile bases of arms: two sliding joints and one turning joint between the floor and the arm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.pose import Pose
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, RobotModel
+    from robbdd_tools.world.composition import World
+
+SPEED, TURNING = 0.5, 1.0
+"""Largest speeds (m/s, rad/s) of a base whose file states none."""
+GRIP = 0.5
+"""Friction of wheels on the floor: share of the weight that a base without stated force limits can push with."""
+LEVER = 0.2
+"""Half the distance (m) of the wheels of such a base: its largest torque is its largest force with this lever."""
+FREQUENCY, RATIO = 20.0, 1.0
+"""Natural frequency (rad/s) and damping ratio of the servos of a base."""
+LEVEL = 1e-6
+"""Deviation of an axis from the horizontal or the vertical up to which it counts as such."""
+
+
+@dataclass(frozen=True, slots=True)
+class MobileBase:
+    """The base of an arm in its file: the names of two sliding joints and of the turning joint that they carry.
+
+    ``speed`` (m/s) and ``turning`` (rad/s) are its largest speeds, ``force`` (N) and ``torque`` (N m) what its wheels
+    can exert. ``stated`` says whether all of these are from the file. ``gains``: stiffness and damping of each servo.
+    """
+
+    joints: tuple[str, str, str]
+    speed: float
+    turning: float
+    force: float
+    torque: float
+    stated: bool
+    gains: tuple[tuple[float, float], ...]
+
+
+def planar_joints(model: Any, joint: int) -> tuple[int, int, int] | None:
+    """Return the joints of a mobile base that carries a joint of an arm, ``None`` if its base is fixed.
+
+    They are the first three joints from the world on: two horizontal sliding ones, then one about the vertical.
+    """
+    chain = [one for one in _joints_to(model, joint) if one != joint]
+    if len(chain) < len(_BASE) or tuple(int(model.jnt_type[one]) for one in chain[:3]) != _BASE:
+        return None
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    first, second, third = (data.xaxis[one] for one in chain[:3])
+    is_level = abs(first[2]) < LEVEL and abs(second[2]) < LEVEL and abs(float(first @ second)) < LEVEL
+    return (chain[0], chain[1], chain[2]) if is_level and abs(third[2]) > 1.0 - LEVEL else None
+
+
+_BASE = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
+
+
+def _joints_to(model: Any, joint: int) -> list[int]:
+    """Return the joints from the world to a joint, inclusive."""
+    body, found = int(model.jnt_bodyid[joint]), list[int]()
+    while body:
+        first = int(model.body_jntadr[body])
+        found = [*range(first, first + int(model.body_jntnum[body])), *found]
+        body = int(model.body_parentid[body])
+    return [one for one in found if one <= joint]
+
+
+def read_base(model: Any, joint: str) -> MobileBase | None:
+    """Return the mobile base in an arm's compiled file whose first joint is named, ``None`` if the base is fixed."""
+    found = planar_joints(model, int(model.joint(joint).id))
+    if found is None:
+        return None
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    full = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, full)
+    dofs = [int(model.jnt_dofadr[one]) for one in found]
+    inertias = [float(full[dof, dof]) for dof in dofs]
+    weight = float(np.linalg.norm(model.opt.gravity)) * inertias[0]
+    limits = [_actuator_limits(model, one) for one in found]
+    speeds = [limit[0] for limit in limits]
+    forces = [limit[1] for limit in limits]
+    names = tuple(str(model.joint(one).name) for one in found)
+    return MobileBase(
+        (names[0], names[1], names[2]),
+        min(speeds[:2]) or SPEED,
+        speeds[2] or TURNING,
+        min(forces[:2]) or GRIP * weight,
+        forces[2] or GRIP * weight * LEVER,
+        all((*speeds, *forces)),
+        tuple((FREQUENCY**2 * inertia, 2 * RATIO * FREQUENCY * inertia) for inertia in inertias),
+    )
+
+
+def _actuator_limits(model: Any, joint: int) -> tuple[float, float]:
+    """Return the largest speed (m/s, rad/s) and force (N, N m) of a joint's actuator; 0 if it has none."""
+    speed = force = 0.0
+    for number in range(model.nu):
+        if model.actuator_trntype[number] != int(mujoco.mjtTrn.mjTRN_JOINT):
+            continue
+        if int(model.actuator_trnid[number, 0]) != joint:
+            continue
+        gain, bias = float(model.actuator_gainprm[number, 0]), model.actuator_biasprm[number]
+        is_velocity = bias[1] == 0.0 and abs(gain + bias[2]) <= LEVEL * abs(gain)
+        if is_velocity and model.actuator_ctrllimited[number]:
+            speed = float(model.actuator_ctrlrange[number, 1])
+        if model.actuator_forcelimited[number]:
+            force = float(model.actuator_forcerange[number, 1] * abs(model.actuator_gear[number, 0]))
+    return speed, force
+
+
+@cache
+def base_of(robot: RobotModel) -> MobileBase | None:
+    """Return the mobile base of a robot, ``None`` if its base is fixed. Raises ``SceneError`` for a broken file."""
+    from robbdd_tools.world.composition import load_robot
+
+    return read_base(load_robot(robot).compile(), robot.joints[0])
+
+
+def drive_by_servos(child: Any, base: MobileBase) -> None:
+    """Give the joints of a base servos with its force limits, in place of the actuators of its file.
+
+    Between driving, a servo holds the base in place, as brakes do.
+    """
+    for actuator in list(child.actuators):
+        if actuator.target in base.joints:
+            child.delete(actuator)
+    forces = (base.force, base.force, base.torque)
+    for joint, force, (stiffness, damping) in zip(base.joints, forces, base.gains, strict=True):
+        servo = child.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        servo.set_to_position(kp=stiffness, kv=damping)
+        servo.forcerange, servo.forcelimited = [-force, force], True
+
+
+class BaseState:
+    """The joints of one mobile base in the engine's arrays of a compiled world.
+
+    ``joints`` (3,) are indices of joint positions, ``motors`` (3,) of controls, ``targets`` (3,) of servo targets.
+    ``lead`` is the time (s) by which a target leads. ``start`` is the pose of the arm's frame with all joints at 0.
+    """
+
+    def __init__(self, world: World, name: str, base: MobileBase) -> None:
+        model = world.model
+        self.limits = base
+        self.start = world.bases[name]
+        numbers = [int(model.joint(f"{name}/{joint}").id) for joint in base.joints]
+        self.joints = np.array([model.jnt_qposadr[number] for number in numbers])
+        self.motors = np.array([int(model.actuator(f"{name}/{joint}-servo").id) for joint in base.joints])
+        self.targets = model.actuator_actadr[self.motors]
+        self.lead = 2 * RATIO / FREQUENCY
+        data: Any = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        self._axes: FloatArray = data.xaxis[numbers[:2], :2].copy()
+        self._sense = 1.0 if data.xaxis[numbers[2], 2] > 0.0 else -1.0
+        self._pivot: FloatArray = data.xanchor[numbers[2], :2].copy()
+
+    def pose_at(self, positions: FloatArray) -> FloatArray:
+        """Return the pose of the base, (x m, y m, yaw rad) of its turning axis, for joint positions (3,)."""
+        place = self._pivot + positions[:2] @ self._axes
+        return np.array([*place, self.start.yaw + self._sense * positions[2]])
+
+    def positions_at(self, pose: FloatArray) -> FloatArray:
+        """Return the joint positions (3,) for a pose (3,) of the base."""
+        return np.array([*(self._axes @ (pose[:2] - self._pivot)), self._sense * (pose[2] - self.start.yaw)])
+
+    def frame_at(self, positions: FloatArray) -> Pose:
+        """Return the pose of the arm's frame for joint positions (3,)."""
+        x, y, yaw = self.pose_at(positions).tolist()
+        turn = yaw - self.start.yaw
+        c, s = np.cos(turn), np.sin(turn)
+        dx, dy = self.start.position[0] - self._pivot[0], self.start.position[1] - self._pivot[1]
+        return Pose((float(x + c * dx - s * dy), float(y + s * dx + c * dy), self.start.position[2]), yaw)

@@ -1,0 +1,80 @@
+"""Where a mobile base stands to work at a workspace: in front of one of its sides."""
+
+from __future__ import annotations
+
+from math import atan2, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.motion import frame_of, tool_pose
+from robbdd_tools.world.working_area import NEAREST, side_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.robot import Robot
+    from robbdd_tools.world.simulation import Simulation
+
+FARTHEST, SPACING = 0.80, 0.05
+"""Largest distance (m) of the base's axis from a side of the workspace, and between those that are tried."""
+ALONG = (0.0, 0.15, -0.15, 0.30, -0.30, 0.45, -0.45, 0.60, -0.60)
+"""Offsets (m) from the middle of the side that are tried."""
+INSIDE = 0.15
+"""Distance (m) of the place that the arm must reach from the side, or half the width of a narrower workspace."""
+ABOVE = 0.10
+"""Height (m) of that place above the bottom of the workspace."""
+
+
+def standing_places(
+    simulation: Simulation, robot: Robot, workspace: str, is_free: Callable[[FloatArray], bool]
+) -> Iterator[FloatArray]:
+    """Yield for each side of a workspace the best pose of the base (x m, y m, yaw rad) there, if there is one.
+
+    The base is free of collisions, faces the side, and the arm reaches a place in the workspace from it.
+    """
+    for carrier, region in simulation.world.cast.regions.get(workspace, ()):
+        position, rotation = simulation.seen_place(carrier)
+        middle = position + rotation @ np.array(region.center)
+        for side in range(4):
+            out, half, across = side_of(rotation, region, side)
+            bottom = float(middle[2]) - region.half[2] + ABOVE
+            found = _before_side(robot, (middle, out, half, across), bottom, is_free)
+            if found is not None:
+                yield found
+
+
+def _before_side(
+    robot: Robot,
+    side: tuple[FloatArray, FloatArray, float, float],
+    height: float,
+    is_free: Callable[[FloatArray], bool],
+) -> FloatArray | None:
+    middle, out, half, length = side
+    along = np.array([-out[1], out[0]])
+    yaw = atan2(-out[1], -out[0])
+    for offset in (one for one in ALONG if abs(one) <= length):
+        for distance in np.arange(NEAREST, FARTHEST, SPACING).tolist():
+            place = middle[:2] + (half + distance) * out + offset * along
+            goal = place - (distance + min(half, INSIDE)) * out
+            pose = np.array([*place, yaw])
+            if not _reaches(robot, pose, np.array([*goal, height])):
+                break
+            if is_free(pose):
+                return pose
+    return None
+
+
+def _reaches(robot: Robot, pose: FloatArray, place: FloatArray) -> bool:
+    """Return whether the arm reaches a place (3,) m with its tool down when its base is at a pose."""
+    assert robot.mobile is not None, "only mobile bases drive"
+    arm = arm_of(robot.model)
+    base = robot.mobile.frame_at(robot.mobile.positions_at(pose))
+    position, rotation = frame_of(tool_pose(base, place, base.yaw + pi / 2))
+    try:
+        arm.solve(arm.towards(position), position, rotation)
+    except Unreachable:
+        return False
+    return True
