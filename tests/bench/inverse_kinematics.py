@@ -15,8 +15,8 @@ import numpy as np
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.arm_kinematics import CLOSE, ROUNDS, Arm, Unreachable, arm_of
-from robbdd_tools.world.composition import load_robot
 from robbdd_tools.world.motion import ToolPose, frame_of
+from robbdd_tools.world.robot_specs import load_robot
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel

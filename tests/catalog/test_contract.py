@@ -14,8 +14,8 @@ from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotMod
 from robbdd_tools.catalog.registry import DuplicateWord, build_catalog, load_catalog
 from robbdd_tools.judging.parsed_sentences import fluent_pattern, read_clause, read_step
 from robbdd_tools.protocol.clauses import BehaviourCall, Fluent
-from robbdd_tools.world.composition import mjcf_path
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.robot_specs import mjcf_path
 
 CATALOG = load_catalog()
 every_predicate = pytest.mark.parametrize("predicate", CATALOG.predicates.values(), ids=lambda word: word.name)

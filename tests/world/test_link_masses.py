@@ -11,9 +11,9 @@ import pytest
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.arm_kinematics import arm_of
-from robbdd_tools.world.composition import load_robot
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.mobile_base import base_of
+from robbdd_tools.world.robot_specs import load_robot
 from world.test_kinematics import PUBLISHED
 
 if TYPE_CHECKING:

@@ -87,7 +87,10 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
     ("scene", "message"),
     [
         (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, belt, bench, bin, "),
-        (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, gen3, kinova, panda"),
+        (
+            replace(SCENE, agents=("env:hal",)),
+            "no model for agent 'env:hal': .* one of franka, gen3, kinova, mobile, panda",
+        ),
         (
             replace(SCENE, agents=tuple(f"t:panda{number}" for number in range(1, 6))),
             "room for 4 agents around 'env:bench', one at each side; place t:panda5 in a .scenex",

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robbdd_tools.world.composition import load_robot
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.robot_files import prepared_robot
+from robbdd_tools.world.robot_specs import load_robot
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel

@@ -23,7 +23,7 @@ GROUND = 0.02
 
 
 class BaseSpace:
-    """Collision checks of a robot in its present posture, with what it holds, for other poses of its base.
+    """Collision checks of a robot in its present posture, with the object in its gripper, for other poses of its base.
 
     Everything is where it is seen at construction. Loose things that are lower than ``SCAN`` are not seen.
     """
@@ -45,7 +45,7 @@ class BaseSpace:
         self._floor = float(lows[self._moving & (self._model.geom_contype > 0)].min()) + GROUND
         self._unseen = np.array([owner in self._low_things(simulation, lows) for owner in self._owners])
         self.touched: dict[str, None] = {}
-        """What was in the way in the checks so far."""
+        """The owners of the things that were in the way so far."""
 
     @property
     def start(self) -> FloatArray:
@@ -77,7 +77,7 @@ class BaseSpace:
         return False
 
     def _place(self, pose: FloatArray) -> None:
-        """Put the base, and what the robot holds, at a pose of the base."""
+        """Put the base, and the object in its gripper, at a pose of the base."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._mobile.joints] = self._mobile.positions_at(pose)
         if self._held is not None:

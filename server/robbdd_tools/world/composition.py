@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from math import cos, sin
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from robbdd_tools.world.mobile_base import base_of, drive_by_servos
 from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
-from robbdd_tools.world.robot_files import prepared_robot
+from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from robbdd_tools.world.staging import Staging
@@ -92,33 +91,6 @@ def _seed_of(scene: SceneSpec, seed: int) -> int:
     """Return the seed configured for the scene, if any."""
     written = next((config.value for config in scene.config if config.name == "seed"), "")
     return int(written) if written.isdecimal() else seed
-
-
-def mjcf_path(robot: RobotModel) -> Path:
-    """Return the path of the robot's model file. Raises ``SceneError`` if the file is missing."""
-    from robbdd_tools.catalog import robots
-
-    own = Path(robots.__path__[0]) / robot.mjcf
-    path = own if own.is_file() else Path(robot.mjcf)
-    if not path.is_file():
-        raise SceneError(f"the model file '{robot.mjcf}' of robot '{robot.name}' is missing")
-    return path
-
-
-def load_robot(robot: RobotModel) -> Any:
-    """Return the engine's editable description of a robot; raises ``SceneError`` if its file is broken."""
-    prepared = prepared_robot(robot.mjcf)
-    if prepared is not None:
-        return prepared.copy()
-    try:
-        return _read(str(mjcf_path(robot))).copy()
-    except ValueError as error:
-        raise SceneError(f"the model file of robot '{robot.name}' cannot be read: {error}") from error
-
-
-@cache
-def _read(path: str) -> Any:
-    return mujoco.MjSpec.from_file(path)
 
 
 def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -> Any:

@@ -52,7 +52,7 @@ class DriveBase:
     def move_to(self, workspaces: Sequence[str]) -> Step:
         """Drive to where the arm reaches one of some workspaces; raises ``BehaviourError``.
 
-        The arm first takes its home posture, with what it holds. The route is planned once.
+        The arm first takes its home posture, with the object in its gripper. The route is planned once.
         """
         self._emit("move-start")
         hand = self._hand

@@ -10,10 +10,10 @@ import numpy as np
 
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.pose import Pose
+from robbdd_tools.world.robot_specs import load_robot
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel
-    from robbdd_tools.world.composition import World
 
 SPEED, TURNING = 0.5, 1.0
 """Largest speeds (m/s, rad/s) of a base whose file states none."""
@@ -119,8 +119,6 @@ def _actuator_limits(model: Any, joint: int) -> tuple[float, float]:
 @cache
 def base_of(robot: RobotModel) -> MobileBase | None:
     """Return the mobile base of a robot, ``None`` if its base is fixed. Raises ``SceneError`` for a broken file."""
-    from robbdd_tools.world.composition import load_robot
-
     return read_base(load_robot(robot).compile(), robot.joints[0])
 
 
@@ -146,10 +144,9 @@ class BaseState:
     ``lead`` is the time (s) by which a target leads. ``start`` is the pose of the arm's frame with all joints at 0.
     """
 
-    def __init__(self, world: World, name: str, base: MobileBase) -> None:
-        model = world.model
+    def __init__(self, model: Any, name: str, base: MobileBase, start: Pose) -> None:
         self.limits = base
-        self.start = world.bases[name]
+        self.start = start
         numbers = [int(model.joint(f"{name}/{joint}").id) for joint in base.joints]
         self.joints = np.array([model.jnt_qposadr[number] for number in numbers])
         self.motors = np.array([int(model.actuator(f"{name}/{joint}-servo").id) for joint in base.joints])

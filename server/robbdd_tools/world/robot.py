@@ -30,7 +30,7 @@ class Robot:
         self.base = world.bases[name]
         """The pose of the arm's frame, to which tool poses refer; that of a mobile base changes."""
         mobile = base_of(robot)
-        self.mobile = None if mobile is None else BaseState(world, name, mobile)
+        self.mobile = None if mobile is None else BaseState(model, name, mobile, self.base)
         joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
         self.joints = np.array([joint.qposadr[0] for joint in joints])
         self.speeds = np.array([joint.dofadr[0] for joint in joints])
