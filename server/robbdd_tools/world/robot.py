@@ -14,6 +14,7 @@ from robbdd_tools.world.mobile_base import BaseState, base_of
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.composition import World
+    from robbdd_tools.world.pose import Pose
 
 
 class Robot:
@@ -27,7 +28,7 @@ class Robot:
         model, robot = world.model, world.cast.agents[name]
         self.name = name
         self.model = robot
-        self.base = world.bases[name]
+        self.base: Pose = world.bases[name]
         """The pose of the arm's frame, to which tool poses refer; that of a mobile base changes."""
         mobile = base_of(robot)
         self.mobile = None if mobile is None else BaseState(model, name, mobile, self.base)
