@@ -344,5 +344,13 @@ def test_the_language_server_starts_without_what_plans_and_executes_runs() -> No
     named = "print(*(name for name in sys.modules if name.startswith('robbdd_tools.')))"
     loaded = loaded_after(f"from robbdd_tools.lsp.handlers import create_server\ncreate_server()\n{named}")
     assert "robbdd_tools.lsp.handlers" in loaded
-    later = ("campaign", "gherkin.preview", "run.scheduler", "workbench.comparison", "workbench.plan", "workbench.run")
+    later = (
+        "campaign",
+        "gherkin.preview",
+        "graph.write.imported_graphs",
+        "run.scheduler",
+        "workbench.comparison",
+        "workbench.plan",
+        "workbench.run",
+    )
     assert loaded.isdisjoint(f"robbdd_tools.{name}" for name in later)

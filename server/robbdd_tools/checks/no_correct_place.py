@@ -14,7 +14,6 @@ from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.chosen_elements import chosen_elements, written_elements
 from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.graph.write.imported_graphs import CORRECT_FOR, imported_graph
 from robbdd_tools.names.elements import Site, element_of, elements_of, site_of, story_sites
 from robbdd_tools.names.types import uses_by_variable, variable_key
 from robbdd_tools.names.uses import phrase_words
@@ -115,6 +114,8 @@ def _placed_by_graphs(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Key]:
     closure = snapshot.closure(file.document.uri)
     if not any(graph_format(link.uri) for one in closure for link in one.imports):
         return
+    from robbdd_tools.graph.write.imported_graphs import CORRECT_FOR, imported_graph
+
     stated = imported_graph(snapshot, file.document.uri).values(CORRECT_FOR)
     for definition in (definition for one in closure for definition in one.definitions.values()):
         if definition.iri in stated:
