@@ -116,7 +116,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   declaration(DECLARE, "entity.name.type.story", "User Story"),
   declaration(DECLARE, "entity.name.type.variant", "Scenario Variant", "Scenario"),
   declaration(DECLARE, "entity.name.type.behaviour", "Behaviour Tree", "Behaviour"),
-  declaration(DECLARE, "variable.other.constant", "Event", "Task", "Requirement", "const set"),
+  declaration(DECLARE, "variable.other.constant", "Event", "Task", "Requirement", "Predicate", "const set"),
   {
     match: String.raw`(?<![\p{L}\p{N}_-])(event)\s+(${NAME})(?=\s+when(?![\p{L}\p{N}_-]))`,
     captures: { 1: { name: `${DECLARE}.robbdd` }, 2: { name: "variable.other.constant.robbdd" } },
@@ -175,7 +175,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   ),
   // What stays of a declaration that is still being typed.
   phrases(DECLARE, "Scenario Template", "User Story", "Scenario Variant", "Scenario", "Behaviour Tree", "Behaviour", "const set"),
-  phrases(DECLARE, "Event", "Task", "Requirement"),
+  phrases(DECLARE, "Event", "Task", "Requirement", "Predicate"),
   phrases("keyword.other.event", "event"),
   { match: String.raw`\|(?:\s*-{3,}\s*\|)*`, name: "punctuation.separator.table.robbdd" },
 ]);

@@ -328,6 +328,11 @@ BROKEN: dict[str, list[str]] = {
             _SPARE,
         ),
     ],
+    "named-predicate": [
+        MODEL.replace(
+            "Scenario Template", "Predicate (ns=t) <a> is-put in <b>: <a> is located at <b>\nScenario Template", 1
+        ).replace("holds(<part> is located at <goal>, 0.5", "holds(<part> is-put at <goal>, 0.5"),
+    ],
     "emission": [
         MODEL.replace("places at <goal>\n", "places at <goal>\n            emits pick-ends as <pick-start>\n"),
     ],

@@ -41,6 +41,7 @@ def test_an_empty_file_offers_declarations() -> None:
     assert labels("$0") == [
         "Behaviour Tree",
         "Event",
+        "Predicate",
         "Requirement",
         "Scenario Template",
         "Task",

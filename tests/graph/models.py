@@ -10,6 +10,7 @@ ns _low = 'https://example.org/low/'
 Event (ns=bdd) elsewhere
 const set (ns=other_names) mixed { 3, 20 %, -2.5, 1e21, "a \"word\" <&> {x}", 'Gruß', 'two
 lines', <places.bench_ws>, 3 }
+Predicate (ns=t) <thing> is-put at <place>: ( <thing> is at rest and ( not <thing> is located at <place> ) )
 Scenario Template (ns=t) fetch {
     duration: from <start> until <end>
     task: <task>
@@ -29,6 +30,7 @@ Scenario Template (ns=t) fetch {
             and slow: holds(<robot> moves slower than 0.25 m/s whenever <robot> is nearer than <near> to <goal>,
                             before <start>)
             and apart: holds(<part> is farther than 3e-1 m from <robot>, before <start>)
+            and put: holds(<part> is-put at <goal>, before <start>)
             and level: holds(<part> is tilted less than 10deg, before <start>)
             and text: holds(pred('{p} & {r}', p=<part>, r=<robot>), 1 seconds after <end>)
         )

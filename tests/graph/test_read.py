@@ -71,7 +71,11 @@ def test_stories_and_variants_come_in_written_order() -> None:
 
 def test_clauses_come_back_as_they_were_written() -> None:
     template = variant("table").template
-    at, either, neither, config, slow, apart, _, text, first, second, behaviour, some = template.clauses
+    at, either, neither, config, slow, apart, put, _, text, first, second, behaviour, some = template.clauses
+    assert isinstance(put, Fluent)
+    assert put.named is not None
+    assert (put.predicate, put.arguments) == (t("is-put")[0], {"thing": T + "var-part", "place": T + "var-goal"})
+    assert put.named.sentence == '"{thing}" is-put at "{place}"'
     assert (template.start, template.end) == t("start", "end")
     assert at == Fluent(
         n("at"),

@@ -19,7 +19,13 @@ from robbdd_tools.judging.decisions import decide, is_closed, no_step, occurred
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
-from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, judged_clause, stated_by_step
+from robbdd_tools.judging.scenario_clauses import (
+    clause_of,
+    iteration_of,
+    judged_clause,
+    named_predicates,
+    stated_by_step,
+)
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.monitor.without_physics import NO_CONTACTS
@@ -79,7 +85,8 @@ class ScenarioRun:
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._known = {clause.line: clause for clause in spec.clauses}
         self._wording = wording
-        steps = {line: stated_by_step(role, text, self._known.get(line), wording) for line, role, text in texts}
+        named = named_predicates(spec)
+        steps = {line: stated_by_step(role, text, self._known.get(line), wording, named) for line, role, text in texts}
         self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
         self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}
         self._texts = {line for line, step in steps.items() if isinstance(step, Text)}

@@ -18,9 +18,14 @@ from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.scenario_run import ScenarioRun
+    from robbdd_tools.catalog.api import Predicate
 
 TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variable scene elements")
 """Steps that list the scene for the reader; the manifest has the same data."""
+
+
+_registered: set[str] = set()
+"""Patterns of the sentences of named predicates."""
 
 
 def register() -> None:
@@ -45,6 +50,23 @@ def register() -> None:
         behave.step(OCCURS)(_await_event)
     finally:
         matchers.use_step_matcher("parse")
+
+
+def register_named(predicates: Iterable[Predicate]) -> None:
+    """Register the sentences of predicates that a model defines, each once. Users' own steps take precedence."""
+    behave = import_module("behave")
+    matchers = import_module("behave.matchers")
+    ambiguous = import_module("behave.step_registry").AmbiguousStep
+    for pattern in (fluent_pattern(predicate) for predicate in predicates):
+        if pattern not in _registered:
+            _registered.add(pattern)
+            matchers.use_step_matcher("re")
+            try:
+                behave.step(pattern)(_judge)
+            except ambiguous:
+                pass
+            finally:
+                matchers.use_step_matcher("parse")
 
 
 def load_steps(files: Iterable[Path], originals: Mapping[str, str] = MappingProxyType({})) -> None:

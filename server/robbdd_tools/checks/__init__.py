@@ -30,6 +30,7 @@ from robbdd_tools.checks.memo import Kept
 from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.model_name import model_name
+from robbdd_tools.checks.named_predicate import named_predicate
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_correct_place import no_correct_place
 from robbdd_tools.checks.no_emitter import no_emitter
@@ -104,6 +105,7 @@ FILE_RULES = (
     execution_fit,
     model_file,
     model_name,
+    named_predicate,
     namespace_iri,
     no_correct_place,
     no_evaluator,

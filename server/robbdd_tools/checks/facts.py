@@ -29,6 +29,7 @@ UNIQUE_KINDS = frozenset(
         SymbolKind.WORKSPACE_SET,
         SymbolKind.AGENT_SET,
         SymbolKind.CONSTANT_SET,
+        SymbolKind.PREDICATE,
         SymbolKind.COMPOSITION,
         SymbolKind.SCENE,
         SymbolKind.TEMPLATE,

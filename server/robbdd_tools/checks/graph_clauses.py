@@ -25,6 +25,7 @@ from robbdd_tools.checks.single_element import CODE as SINGLE_ELEMENT
 from robbdd_tools.checks.single_element import needs_one
 from robbdd_tools.graph.acceptance_model import (
     BehaviourClause,
+    Condition,
     Fluent,
     Iri,
     TextClause,
@@ -64,10 +65,15 @@ def _unjudged(site: GraphSite, clauses: tuple[Clause, ...]) -> Iterator[Diagnost
             continue
         text = clause.template if isinstance(clause, TextFluent) else clause.text
         conditions = clause.conditions if isinstance(clause, TextFluent) else ()
-        sentence = sample_sentence(text, time_words(clause.time), [one.predicate for one in conditions])
+        sentence = sample_sentence(text, time_words(clause.time), [_sentence_of(one) for one in conditions])
         if text.strip() and (path is None or not may_define(path, sentence)):
             message = needs_evaluator(may_have_policy=isinstance(clause, TextFluent))
             yield site.finding(clause.iri, NO_EVALUATOR, message)
+
+
+def _sentence_of(condition: Condition) -> str:
+    predicate = condition.named or load_catalog().predicates[condition.predicate]
+    return predicate.sentence
 
 
 def _unemitted(site: GraphSite, variant: Variant, clauses: tuple[Clause, ...]) -> Iterator[Diagnostic]:

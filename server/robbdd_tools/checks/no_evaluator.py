@@ -15,6 +15,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.protocol.time_words import instant_words, interval_words
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.predicate_tree import phrase_shape
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
@@ -103,7 +104,15 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 def _sentence(clause: FreeClause) -> str:
     conditions = clause.conditions if isinstance(clause, tree.Fluent) else ()
-    return sample_sentence(text_of(clause).value, _time_words(clause.time), [one.word for one in conditions])
+    return sample_sentence(
+        text_of(clause).value, _time_words(clause.time), [_condition_sentence(one) for one in conditions]
+    )
+
+
+def _condition_sentence(condition: tree.PhraseUse | tree.NamedUse) -> str:
+    if isinstance(condition, tree.NamedUse):
+        return " ".join(word or '"{value}"' for word in phrase_shape(condition))
+    return load_catalog().predicates[condition.word].sentence
 
 
 def _time_words(time: tree.TimeConstraint) -> str:
@@ -117,11 +126,10 @@ def _time_words(time: tree.TimeConstraint) -> str:
 def sample_sentence(text: str, time: str, conditions: Sequence[str] = ()) -> str:
     """Return the sentence of a step for a text, as in a feature, with sample words for values.
 
-    ``time`` are the words of its time constraint, with sample words for events. ``conditions`` are the predicates of
+    ``time`` are the words of its time constraint, with sample words for events. ``conditions`` are the sentences of
     its conditions.
     """
     stated = _SLOT.sub('"x"', text.strip().replace("\\", "\\\\"))
     if conditions:
-        sentences = (load_catalog().predicates[condition].sentence for condition in conditions)
-        stated += f" whenever {_SLOT.sub('x', ' and '.join(sentences))}"
+        stated += f" whenever {_SLOT.sub('x', ' and '.join(conditions))}"
     return f"{stated} {time}"

@@ -13,6 +13,7 @@ from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, execution_rate
+from robbdd_tools.features.describe_predicate import describe_predicate
 from robbdd_tools.features.element_properties import describe_properties
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.imported_statements import describe_graph, describe_statements
@@ -187,6 +188,8 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             yield code_block(text, language_of(site.uri))
         case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
             yield from _clause(site, definition)
+        case SymbolKind.PREDICATE:
+            yield from describe_predicate(site)
         case SymbolKind.EVENT:
             yield from _defined_event(site, definition)
         case SymbolKind.VARIANT:
@@ -226,6 +229,8 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
             phrase = node.predicate if isinstance(node, tree.Fluent) else node.action
             if isinstance(phrase, tree.PhraseUse):
                 yield word_meaning(word_of(phrase))
+            if isinstance(phrase, tree.NamedUse):
+                yield from describe_predicate(site.follow(phrase.predicate))
             if isinstance(node, tree.Fluent):
                 yield time_meaning(node.time)
                 yield from [condition_meaning(node.conditions)] if node.conditions else []

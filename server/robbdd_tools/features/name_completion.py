@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Symbol
 
 MAX_TO_IMPORT = 300
 """Maximum number of proposed names that need an import; loaded files and files in the same folder come first."""
@@ -200,6 +201,7 @@ class Names:
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)
         visible = scope.visible(ROLE_KINDS[role], self.cursor.scopes)
+        visible = {name: found for name, found in visible.items() if self._may_be_named(name, found[1].symbol)}
         misfits = _misfits(self.cursor) if role in ("Variable", "Term") else frozenset[str]()
         ranks = dict.fromkeys(misfits, 1)
         if role == "Term":
@@ -209,6 +211,17 @@ class Names:
         for name in sorted(visible, key=lambda name: (ranks.get(name, 0), name)):
             definition = scope.define(*visible[name])
             yield self._written(name, definition), definition, ranks.get(name, 0)
+
+    @staticmethod
+    def _may_be_named(name: str, symbol: Symbol) -> bool:
+        """Return whether a name may be written: predicates with a hyphen, and parameters inside of their definition."""
+        match symbol.kind:
+            case SymbolKind.PARAMETER:
+                return "." not in name
+            case SymbolKind.PREDICATE:
+                return "-" in name
+            case _:
+                return True
 
     def _written(self, name: str, definition: Definition) -> str:
         """Return the shortest form of a name that starts with the qualifier that the user typed."""
@@ -232,7 +245,8 @@ class Names:
                     yield replace(found, detail=detail, edits=(import_edit(self.file, other.path),))
 
     def _proposal(self, name: str, kind: SymbolKind, origin: tuple[str, str], bracket: str, rank: int) -> Completion:
-        closing = kind is not SymbolKind.NAMESPACE and _needs_closing(self.file.document.text, self.cursor)
+        bare = kind in (SymbolKind.NAMESPACE, SymbolKind.PREDICATE)
+        closing = not bare and _needs_closing(self.file.document.text, self.cursor)
         text = f"{bracket}{name}>" if closing else f"{bracket}{name}"
         return Completion(name, kind, kind, text, self.cursor.span, self.whole, rank, origin=origin)
 

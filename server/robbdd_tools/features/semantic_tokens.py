@@ -253,6 +253,9 @@ def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
             case tree.PhraseUse():
                 concept = ACTION if node.word in load_catalog().behaviours else PREDICATE
                 yield from _words_in(declaration.text, node, concept)
+            case tree.NamedPredicate() | tree.NamedUse():
+                for piece in node.pieces:
+                    yield from ((word.span.start, Token(word.span, PREDICATE)) for word in piece.words)
             case tree.During() | tree.Before() | tree.After():
                 yield from _words_in(declaration.text, node, TIME)
             case tree.TextPredicate():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.time_words import occurrence_words
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.predicate_tree import phrase_shape
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,10 +21,23 @@ def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
     if isinstance(clause, tree.BehaviourUse):
         return _phrase_sentence(clause.action)
     predicate = clause.predicate
-    words = _phrase_sentence(predicate) if isinstance(predicate, tree.PhraseUse) else _text_sentence(predicate)
+    words = _text_sentence(predicate) if isinstance(predicate, tree.TextPredicate) else _phrase_sentence(predicate)
     if clause.conditions:
         words = f"{words} whenever {_joined(clause.conditions)}"
     return f"{words} {time_words(clause.time)}"
+
+
+def state_sentence(state: tree.State, *, outer: bool = True) -> str:
+    """Return the definition of a predicate, or a part of it, as a sentence."""
+    match state:
+        case tree.PhraseUse() | tree.NamedUse():
+            return _phrase_sentence(state)
+        case tree.NegatedState(operand=operand):
+            return f"not ( {state_sentence(operand)} )"
+        case tree.AllStates(operands=operands) | tree.AnyState(operands=operands):
+            word = " and " if isinstance(state, tree.AllStates) else " or "
+            joined = word.join(state_sentence(operand, outer=False) for operand in operands)
+            return joined if outer or len(operands) == 1 else f"( {joined} )"
 
 
 def event_sentence(event: tree.DefinedEvent) -> str:
@@ -74,7 +88,7 @@ def _seconds(horizon: tree.Number | tree.Ref) -> str:
     return f"<{horizon.path}>" if isinstance(horizon, tree.Ref) else str(horizon.value)
 
 
-def condition_meaning(conditions: Sequence[tree.PhraseUse]) -> str:
+def condition_meaning(conditions: Sequence[tree.PhraseUse | tree.NamedUse]) -> str:
     """Describe which samples of a window a clause with these conditions concerns."""
     return (
         f"Judged only at the samples at which this holds: {_joined(conditions)}. The margin is that of the "
@@ -110,11 +124,14 @@ def word_meaning(word: Predicate | Behaviour) -> str:
 UNJUDGED = "This installation cannot judge it: such a clause is unknown."
 
 
-def _joined(phrases: Sequence[tree.PhraseUse]) -> str:
+def _joined(phrases: Sequence[tree.PhraseUse | tree.NamedUse]) -> str:
     return " and ".join(map(_phrase_sentence, phrases))
 
 
-def _phrase_sentence(use: tree.PhraseUse) -> str:
+def _phrase_sentence(use: tree.PhraseUse | tree.NamedUse) -> str:
+    if isinstance(use, tree.NamedUse):
+        values = iter(use.values)
+        return " ".join(word or _written(next(values)) for word in phrase_shape(use))
     values = {name: _written(value) for name, value in use.arguments}
     return re.sub(r'"?\{(\w+)[^}]*\}"?', lambda match: values.get(match[1], match[0]), word_of(use).sentence)
 

@@ -25,6 +25,8 @@ from robbdd_tools.syntax.phrases import PREDICATE_RULE
 
 _CHOSEN: Mapping[str, str] = {
     "Expression": "Fluent",
+    "State": "Condition",
+    "Condition": f"{PREDICATE_RULE}located_at",
     "Predicate": f"{PREDICATE_RULE}located_at",
     "TimeConstraint": "Before",
     "Value": "ElementRef",
@@ -75,13 +77,24 @@ class Snippet:
         return re.sub(r"\$\{\d+(?::([^}]*)|\|([^,|]*)[^}]*)\}", lambda match: match[1] or match[2] or "", self.body)
 
 
+_WRITTEN = {
+    "NamedPredicate": Snippet(
+        "Predicate",
+        "Predicate (ns=${1:namespace}) <${2:object}> ${3:is-stored} in <${4:workspace}>: "
+        "<${2:object}> is located at <${4:workspace}>",
+    )
+}
+"""Snippets of declarations whose placeholders depend on each other."""
+
+
 @cache
 def declaration_snippets(language: str) -> tuple[Snippet, ...]:
     """Return a snippet for each kind of declaration in a kind of file, in the order of the grammar."""
     rules = read_grammar(grammar_text(language))
     root = rules[f"{grammar_name(language).capitalize()}Declaration"]
     options = root.options if isinstance(root, Choice) else (root,)
-    return tuple(_Writer(rules).snippet(option) for option in options if isinstance(option, Use))
+    uses = [option for option in options if isinstance(option, Use)]
+    return tuple(_WRITTEN.get(option.rule) or _Writer(rules).snippet(option) for option in uses)
 
 
 @cache

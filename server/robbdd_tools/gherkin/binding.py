@@ -26,12 +26,14 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
+from robbdd_tools.monitor.compound import renamed
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.protocol.time_words import instant_words
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.catalog.registry import Catalog
 
 Value = Cell | stated.AnyOf
@@ -54,6 +56,7 @@ class Binder:
     catalog: Catalog
     by_code: Set[str] = frozenset()
     _curies: dict[str, str] = field(default_factory=dict[str, str])
+    _named_predicates: dict[str, Predicate] = field(default_factory=dict[str, "Predicate"])
 
     def curie(self, iri: str) -> str:
         """Return the CURIE of an IRI. The result is cached."""
@@ -84,7 +87,7 @@ class Binder:
         """Return the statement of a clause that is not a ``When`` clause."""
         match clause:
             case Fluent():
-                predicate = self.catalog.predicates[clause.predicate]
+                predicate = self._predicate(clause)
                 slots = self._slots((slot.name for slot in predicate.slots), clause.arguments, values)
                 condition, time = self._condition(clause, values), self._time(clause, values)
                 if time is None:
@@ -191,11 +194,20 @@ class Binder:
         fluents = (stated.Fluent(one.predicate, one.arguments, After(name)) for one in conditions)
         return None if seconds is None else stated.DefinedEvent(name, tuple(fluents), seconds)
 
+    def _predicate(self, clause: Fluent | Condition) -> Predicate:
+        """Return the predicate of a clause. Names in the definition of a named predicate are shortened."""
+        if clause.named is None:
+            return self.catalog.predicates[clause.predicate]
+        found = self._named_predicates.get(clause.predicate)
+        if found is None:
+            found = self._named_predicates[clause.predicate] = renamed(clause.named, self.curie)
+        return found
+
     def _condition(self, clause: Fluent | TextFluent, values: Values) -> stated.Condition | None:
         return stated.joint_condition([self._one_condition(one, values) for one in clause.conditions])
 
     def _one_condition(self, condition: Condition, values: Values) -> stated.Condition:
-        predicate = self.catalog.predicates[condition.predicate]
+        predicate = self._predicate(condition)
         slots = (slot.name for slot in predicate.slots)
         return stated.Condition(predicate, self._slots(slots, condition.arguments, values))
 

@@ -244,9 +244,11 @@ class _VariantWriter:
         )
 
     def _definitions(self, values: Mapping[Iri, Cell]) -> tuple[str, ...]:
-        """Return the definitions of the template's events as sentences."""
-        found = (self._writer.definition(event, values) for event in self._variant.template.events)
-        return tuple(filter(None, found))
+        """Return the definitions of the template's events, and of named predicates, as sentences."""
+        template = self._variant.template
+        found = (self._writer.definition(event, values) for event in template.events)
+        meanings = self._writer.meanings(self._clauses, template.events, values)
+        return (*filter(None, found), *meanings)
 
     def _clause_tags(self, steps: Iterable[Step]) -> Iterator[str]:
         for clause in dict.fromkeys(step.clause for step in steps):

@@ -20,6 +20,7 @@ from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     Clause,
+    Condition,
     EventClause,
     Exists,
     Fluent,
@@ -134,8 +135,7 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
                 lead = "" if clause.together is None else MEANWHILE
                 yield _pattern("when", f"{lead}{load_catalog().behaviours[clause.behaviour].sentence}")
             case Fluent():
-                sentence = load_catalog().predicates[clause.predicate].sentence
-                yield _pattern(clause.role, f"{sentence}{_condition(clause)} {_time(clause)}")
+                yield _pattern(clause.role, f"{_sentence(clause)}{_condition(clause)} {_time(clause)}")
             case TextFluent():
                 yield _pattern(clause.role, f"{text.free(clause.template)}{_condition(clause)} {_time(clause)}")
             case TextClause():
@@ -143,8 +143,13 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
                 yield _pattern(clause.role, f"{literal} {_time(clause)}")
 
 
+def _sentence(clause: Fluent | Condition) -> str:
+    predicate = clause.named or load_catalog().predicates[clause.predicate]
+    return predicate.sentence
+
+
 def _condition(clause: Fluent | TextFluent) -> str:
-    sentences = [load_catalog().predicates[condition.predicate].sentence for condition in clause.conditions]
+    sentences = list(map(_sentence, clause.conditions))
     return f" whenever {' and '.join(sentences)}" if sentences else ""
 
 

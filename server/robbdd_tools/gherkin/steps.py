@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin import text
-from robbdd_tools.gherkin.binding import Binder, Value, Values
+from robbdd_tools.gherkin.binding import Binder, UnknownElements, Value, Values
 from robbdd_tools.gherkin.words import condition_words, filled, word
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
@@ -16,15 +17,20 @@ from robbdd_tools.graph.acceptance_model import (
     DefinedEvent,
     EventClause,
     Exists,
+    Fluent,
     ForAll,
     Iri,
     Junction,
+    TextFluent,
+    every_clause,
 )
+from robbdd_tools.monitor.compound import Combination, Definition, Operand, Passed, definition_of
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.protocol.time_words import time_words
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.catalog.registry import Catalog
 
 Scope = tuple[tuple[Iri, int], ...]
@@ -90,6 +96,29 @@ class StepWriter:
         lasting = f" for {found.seconds:g} seconds" if found.seconds else ""
         return f'event "{found.name}" occurs when {conditions}{lasting}'
 
+    def meanings(self, clauses: Collection[Clause], events: Iterable[DefinedEvent], values: Values) -> tuple[str, ...]:
+        """Return what each phrase of a named predicate in some clauses and events means, once for each phrase."""
+        if not any(_uses_named(clause) for clause in every_clause(clauses)) and not any(
+            one.named for event in events for one in event.conditions
+        ):
+            return ()
+        defined = (self._binder.defined_event(event, values) for event in events)
+        stated_ones = [fluent for event in defined if event is not None for fluent in event.conditions]
+        for step in self._known_steps(clauses, values):
+            if not isinstance(step.statement, stated.BehaviourCall | stated.EventOccurrence):
+                stated_ones += stated.fluents_of(step.statement)
+        found: dict[str, None] = {}
+        for fluent in stated_ones:
+            conditions = [] if fluent.condition is None else fluent.condition.parts
+            for one in (fluent, *conditions):
+                found |= dict.fromkeys(_meaning(one.predicate, one.arguments))
+        return tuple(found)
+
+    def _known_steps(self, clauses: Collection[Clause], values: Values) -> Iterator[Step]:
+        """Yield steps as far as their elements are known; in a Scenario Outline, a set may vary."""
+        with suppress(UnknownElements):
+            yield from self.steps(clauses, values)
+
     def sentence(self, clause: Clause, values: Values) -> str:
         """Return the sentence of one clause with the values of its variables."""
         return sentence(self._binder.bind(clause, values))
@@ -101,6 +130,31 @@ class StepWriter:
     def _step(self, role: str, clause: Clause, values: Values, scope: Scope) -> Step:
         statement = self._binder.bind(clause, values)
         return Step(role.capitalize(), sentence(statement), clause.iri, role, statement, (clause, values), scope)
+
+
+def _uses_named(clause: Clause) -> bool:
+    conditions = clause.conditions if isinstance(clause, Fluent | TextFluent) else ()
+    return any(one.named is not None for one in conditions) or (isinstance(clause, Fluent) and clause.named is not None)
+
+
+def _meaning(predicate: Predicate, arguments: Mapping[str, stated.Filler]) -> Iterator[str]:
+    definition = definition_of(predicate)
+    if definition is not None:
+        yield f"{filled(predicate.sentence, arguments)} means {_defined(definition, arguments, outer=True)}"
+
+
+def _defined(definition: Definition, arguments: Mapping[str, stated.Filler], *, outer: bool = False) -> str:
+    """Return a definition with its values as words. Named predicates in it are written out, too."""
+    match definition:
+        case Operand(predicate, fillers):
+            own = {slot: arguments[one.parameter] if isinstance(one, Passed) else one for slot, one in fillers.items()}
+            inner = definition_of(predicate)
+            return filled(predicate.sentence, own) if inner is None else _defined(inner, own, outer=outer)
+        case Combination("not", (operand,)):
+            return f"not ( {_defined(operand, arguments, outer=True)} )"
+        case Combination(operator, operands):
+            joined = f" {operator} ".join(_defined(operand, arguments) for operand in operands)
+            return joined if outer else f"( {joined} )"
 
 
 def sentence(statement: stated.Statement, *, within: bool = False) -> str:

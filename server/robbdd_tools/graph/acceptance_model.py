@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from robbdd_tools.base.selections import SelectionRule
+from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
@@ -34,13 +35,15 @@ class Condition:
     iri: Iri
     predicate: str
     arguments: Mapping[str, Iri | str]
+    named: Predicate | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Fluent:
     """A predicate under a time constraint. The events of the time constraint are IRIs.
 
-    ``predicate`` is the name of the predicate in the catalog. ``arguments`` maps each slot of the predicate to a
+    ``predicate`` is the name of the predicate in the catalog, or the IRI of the named predicate ``named``, in which
+    elements have their IRIs. ``arguments`` maps each slot of the predicate to a
     variable, an element or a bare name. ``conditions`` select the samples at which the predicate must hold. ``seconds``
     is the variable whose value is the horizon of the time constraint (s), if any.
     """
@@ -52,6 +55,7 @@ class Fluent:
     time: TimeConstraint
     conditions: tuple[Condition, ...] = ()
     seconds: Iri | None = None
+    named: Predicate | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -35,6 +36,7 @@ CONDITION = rf'(?: whenever (?P<condition>(?:"{QUOTED}"|[^"])*?))?'
 """The condition after the predicate of a sentence."""
 OCCURS = r'event "(?P<event>[^"]*)" occurs'
 ANY = "any of "
+Named = Sequence["Predicate"]
 _ESCAPE = re.compile(r"\\(?:u([0-9a-f]{4})|(.))")
 _NAMED = {"n": "\n", "r": "\r", "t": "\t"}
 _OPAQUE = re.compile(rf'"{QUOTED}"|\\.')
@@ -53,13 +55,14 @@ def fluent_pattern(predicate: Predicate) -> str:
     return rf"{sentence_pattern(predicate.sentence)}{CONDITION} {TIME}"
 
 
-def read_step(role: str, text: str, wording: int = WORDING) -> Statement | None:
+def read_step(role: str, text: str, wording: int = WORDING, named: Named = ()) -> Statement | None:
     """Return the statement of a step's sentence in a feature with this version of the wording.
 
-    Returns ``None`` for a When step that contains neither a behaviour of the catalog nor an event.
+    ``named`` are the predicates that the model defines. Returns ``None`` for a When step that contains neither a
+    behaviour of the catalog nor an event.
     """
     if role != "when":
-        return read_clause(text, wording)
+        return read_clause(text, wording, named)
     if (match := re.fullmatch(OCCURS, text)) is not None:
         return EventOccurrence(match["event"])
     words = text.removeprefix(MEANWHILE)
@@ -69,35 +72,36 @@ def read_step(role: str, text: str, wording: int = WORDING) -> Statement | None:
     return None
 
 
-def read_clause(text: str, wording: int = WORDING) -> Clause:
+def read_clause(text: str, wording: int = WORDING, named: Named = ()) -> Clause:
     """Parse the sentence of a Given or Then step; never raises.
 
     A time constraint that the version of the wording no longer has is part of a text, which nothing judges.
     """
-    for predicate, pattern in _fluents():
+    own = tuple((one, re.compile(fluent_pattern(one))) for one in named)
+    for predicate, pattern in (*_fluents(), *own):
         if (match := pattern.fullmatch(text)) is not None and _understood(match, wording):
-            condition = _condition(match["condition"])
+            condition = _condition(match["condition"], named)
             if condition is not None or match["condition"] is None:
                 fillers = _fillers(match, predicate.slots)
                 return Fluent(predicate, fillers, constraint_of(match), condition=condition)
     if (match := re.fullmatch(NOT, text)) is not None and _balanced(match["inner"]):
-        return Junction("not", (read_clause(match["inner"], wording),))
+        return Junction("not", (read_clause(match["inner"], wording, named),))
     inner = text
     if (match := re.fullmatch(GROUP, text)) is not None and _balanced(match["inner"]):
         inner = match["inner"]
     for operator in ("and", "or"):
         parts = _split(inner, f" {operator} ")
-        operands = tuple(read_clause(part, wording) for part in parts) if len(parts) > 1 else ()
+        operands = tuple(read_clause(part, wording, named) for part in parts) if len(parts) > 1 else ()
         # Without parentheses, "and" and "or" may be words of free text.
         if operands and (inner != text or not any(isinstance(operand, Text) for operand in operands)):
             return Junction(operator, operands)
     if inner != text:
-        return read_clause(inner, wording)
+        return read_clause(inner, wording, named)
     match = re.fullmatch(rf"(?P<words>.*?) {TIME}", text)
     if match is None or not _understood(match, wording):
         return Text(text)
     words, _, stated = match["words"].rpartition(" whenever ")
-    condition = _condition(stated) if words else None
+    condition = _condition(stated, named) if words else None
     return Text(match["words"] if condition is None else words, constraint_of(match), condition=condition)
 
 
@@ -118,15 +122,16 @@ def _conditions() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
     return tuple((predicate, re.compile(sentence_pattern(predicate.sentence))) for predicate in predicates)
 
 
-def _condition(text: str | None) -> Condition | None:
+def _condition(text: str | None, named: Named) -> Condition | None:
     """Return the conditions that a part of a sentence states; ``None`` if a predicate is not in the catalog."""
-    found = [] if text is None else [_one_condition(part) for part in _split(text, " and ")]
+    found = [] if text is None else [_one_condition(part, named) for part in _split(text, " and ")]
     known = [one for one in found if one is not None]
     return joint_condition(known) if len(known) == len(found) else None
 
 
-def _one_condition(text: str) -> Condition | None:
-    for predicate, pattern in _conditions():
+def _one_condition(text: str, named: Named) -> Condition | None:
+    own = tuple((one, re.compile(sentence_pattern(one.sentence))) for one in named)
+    for predicate, pattern in (*_conditions(), *own):
         if (match := pattern.fullmatch(text)) is not None:
             return Condition(predicate, _fillers(match, predicate.slots))
     return None

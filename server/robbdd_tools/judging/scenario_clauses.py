@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.judging.parsed_sentences import read_step
 from robbdd_tools.judging.policies import with_policies
+from robbdd_tools.monitor.compound import definition_of
 from robbdd_tools.monitor.time import in_iterations
-from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Junction
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, leaves_of
 from robbdd_tools.protocol.time_words import FIRST_WORDING, WORDING
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.protocol.clauses import Clause, Statement
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
@@ -25,15 +27,17 @@ def statement_of(known: ClauseSpec) -> Statement | None:
     return known.statement or _with_iris(read_step(known.role, known.sentence, FIRST_WORDING), known)
 
 
-def stated_by_step(role: str, text: str, known: ClauseSpec | None, wording: int = WORDING) -> Statement | None:
+def stated_by_step(
+    role: str, text: str, known: ClauseSpec | None, wording: int = WORDING, named: Sequence[Predicate] = ()
+) -> Statement | None:
     """Return the statement of a step.
 
     This is the statement of ``known``, the clause of the step's line. If the sentence was edited, the sentence is
-    parsed by the version ``wording`` of the feature.
+    parsed by the version ``wording`` of the feature, with the predicates ``named`` that the model defines.
     """
     if known is None:
-        return read_step(role, text, wording)
-    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text, wording), known)
+        return read_step(role, text, wording, named)
+    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text, wording, named), known)
 
 
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
@@ -51,6 +55,21 @@ def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         raise TypeError(f"{known.sentence} is a When clause")
     return judged_clause(statement, known, spec)
+
+
+def named_predicates(spec: ScenarioSpec) -> tuple[Predicate, ...]:
+    """Return the predicates that the model of a scenario defines and its clauses use, one for each sentence."""
+    found: dict[str, Predicate] = {}
+    for statement in (clause.statement for clause in spec.clauses):
+        fluents = (
+            () if statement is None or isinstance(statement, BehaviourCall | EventOccurrence) else leaves_of(statement)
+        )
+        for leaf in fluents:
+            parts = [part.predicate for part in leaf.condition.parts] if leaf.condition is not None else []
+            for one in (*([leaf.predicate] if isinstance(leaf, Fluent) else []), *parts):
+                if definition_of(one) is not None:
+                    found.setdefault(one.sentence, one)
+    return tuple(found.values())
 
 
 def behaviour_calls(spec: ScenarioSpec) -> list[tuple[BehaviourCall, ClauseSpec]]:

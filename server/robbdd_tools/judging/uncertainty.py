@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.quantity_units import si_factor
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.monitor.compound import CompoundEvaluator, changed
 from robbdd_tools.monitor.joint_condition import joint_arguments, joint_predicate, parts_of
 from robbdd_tools.monitor.judge import WindowEvidence, judge, unit_of
 from robbdd_tools.monitor.time import Window
@@ -44,6 +45,8 @@ def certain(
     the negative uncertainty. So the clause holds surely if it holds wherever its condition perhaps applies, and is
     violated surely if it is where the condition surely applies.
     """
+    if any(isinstance(one.evaluate, CompoundEvaluator) for one, _ in ((predicate, arguments), *_parts(condition))):
+        return _certain_definition(predicate, arguments, constraint, trace, regions, condition)
     if condition is None:
         verdict = judge(predicate, arguments, constraint, trace, regions)
         return _narrowed(verdict, bound_of(predicate, arguments, trace, regions))
@@ -65,6 +68,47 @@ def certain(
     if surely.outcome is Outcome.UNKNOWN:
         return surely
     return unknown("whether its condition held is within the uncertainty of the measurements", Cause.UNOBSERVED)
+
+
+def _parts(condition: Condition | None) -> Sequence[Condition]:
+    return () if condition is None else parts_of(*condition)
+
+
+def _certain_definition(
+    predicate: Predicate,
+    arguments: Arguments,
+    constraint: TimeConstraint,
+    trace: Trace,
+    regions: Regions,
+    condition: Condition | None,
+) -> Verdict:
+    """Judge a clause with a named predicate: a verdict is certain if all margins may be wrong by their doubts."""
+    doubts: list[str] = []
+
+    def raised(one: Predicate, own: Arguments, by: int) -> Predicate:
+        bound = bound_of(one, own, trace, regions)
+        if isinstance(bound, str):
+            doubts.append(bound)
+            return one
+        return _raised((one, own), by * bound, trace, regions)[0]
+
+    def verdict(sign: int) -> Verdict:
+        """Judge with all margins raised (``sign`` 1) or lowered (-1), and those of conditions the other way."""
+        own = changed(predicate, arguments, lambda one, given, inner: raised(one, given, inner * sign))
+        if condition is None:
+            return judge(own, arguments, constraint, trace, regions)
+        parts = parts_of(*condition)
+        whole = [changed(one, given, lambda part, its, inner: raised(part, its, -inner * sign)) for one, given in parts]
+        joined = joint_predicate(whole), joint_arguments([given for _, given in parts])
+        return judge(own, arguments, constraint, trace, regions, joined)
+
+    plain = judge(predicate, arguments, constraint, trace, regions, condition)
+    least, most = verdict(-1), verdict(1)
+    if doubts:
+        return unknown(doubts[0], Cause.UNOBSERVED)
+    if plain.outcome is Outcome.UNKNOWN or (least.outcome is plain.outcome and most.outcome is plain.outcome):
+        return plain
+    return unknown("its margin is within the uncertainty of the measurements", Cause.UNOBSERVED)
 
 
 def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float | str:

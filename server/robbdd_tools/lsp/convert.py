@@ -38,6 +38,8 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "module": _KINDS.Module,
     "value": _KINDS.Constant,
     SymbolKind.EVENT: _KINDS.Event,
+    SymbolKind.PREDICATE: _KINDS.Function,
+    SymbolKind.PARAMETER: _KINDS.Variable,
     SymbolKind.VARIABLE: _KINDS.Variable,
     SymbolKind.SET_VARIABLE: _KINDS.Variable,
     SymbolKind.TEMPLATE: _KINDS.Class,
@@ -50,6 +52,8 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
 _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
     SymbolKind.NAMESPACE: types.SymbolKind.Namespace,
     SymbolKind.EVENT: types.SymbolKind.Event,
+    SymbolKind.PREDICATE: types.SymbolKind.Boolean,
+    SymbolKind.PARAMETER: types.SymbolKind.Variable,
     SymbolKind.TASK: types.SymbolKind.Constant,
     SymbolKind.REQUIREMENT: types.SymbolKind.Key,
     SymbolKind.TEMPLATE: types.SymbolKind.Class,

@@ -44,6 +44,8 @@ APPEARANCES: Mapping[str, tuple[str, ...]] = {
     SymbolKind.EVENT: (_TYPES.Event.value,),
     SymbolKind.TASK: (_TYPES.EnumMember.value, "task"),
     SymbolKind.REQUIREMENT: (_TYPES.EnumMember.value, "requirement"),
+    SymbolKind.PREDICATE: (_TYPES.Function.value, "predicate"),
+    SymbolKind.PARAMETER: (_TYPES.Parameter.value,),
     SymbolKind.VARIABLE: (_TYPES.Variable.value,),
     SymbolKind.SET_VARIABLE: (_TYPES.Variable.value, "set"),
     SymbolKind.OBJECT: (_TYPES.EnumMember.value, "object"),

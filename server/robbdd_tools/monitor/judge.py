@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from robbdd_tools.monitor.compound import CompoundEvaluator
+from robbdd_tools.monitor.compound_samples import judge_samples
 from robbdd_tools.monitor.durations import NOT_AN_INTERVAL, judge_duration
 from robbdd_tools.monitor.sample_verdicts import at_some_time, throughout, whenever
 from robbdd_tools.monitor.time import (
@@ -270,9 +272,8 @@ def judge(
 ) -> Verdict:
     """Judge ``holds(predicate(arguments), constraint)``, ``whenever`` a condition holds if there is one.
 
-    ρ is the smallest margin in the window or, if the constraint requires the predicate at some time only, the largest;
-    *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an
-    argument.
+    ρ is the smallest margin in the window, or the largest if the predicate must hold at some time only: *holds* when
+    ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an argument.
     """
     if not isinstance(constraint, During) and constraint.which == "every" and not constraint.number:
         times = occurrence_times(constraint, trace)
@@ -301,18 +302,23 @@ def judge(
         return unknown(missing.reason, Cause.NO_EVENT)
     assert rows is not None
     evidence = WindowEvidence(trace, rows, regions)
+    compound = predicate.evaluate if isinstance(predicate.evaluate, CompoundEvaluator) else None
     try:
-        margins = margins_of(predicate, evidence, arguments)
+        samples = None if compound is None else compound.samples(evidence, arguments)
+        margins = margins_of(predicate, evidence, arguments) if samples is None else samples.margins
         applies = None if condition is None else margins_of(condition[0], evidence, condition[1])
         unit = unit_of(predicate, evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
     except Unobserved as gap:
         return unknown(str(gap), Cause.UNOBSERVED)
+    closing = closing_time(constraint, trace) if constraint.some_time else None
+    if samples is not None:
+        return judge_samples(samples, evidence.times, applies, closing, missing, some_time=constraint.some_time)
     if applies is not None:
         return whenever(margins, applies, evidence.times, unit)
     if constraint.some_time:
-        return at_some_time(margins, evidence.times, unit, closing_time(constraint, trace), missing)
+        return at_some_time(margins, evidence.times, unit, closing, missing)
     return throughout(margins, evidence.times, unit)
 
 
@@ -322,10 +328,7 @@ def unit_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments
 
 
 def margins_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> FloatArray:
-    """Return the margin of a predicate, which must have an evaluator, at each sample of a window, shape (n,).
-
-    Raises ``KeyError`` for a missing record.
-    """
+    """Return the margins of a predicate with an evaluator, shape (n,). Raises ``KeyError`` for a missing record."""
     assert predicate.evaluate is not None
     return predicate.evaluate(evidence, arguments)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from robbdd_tools.syntax.declaration import SymbolKind
 
+VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 _ELEMENT_SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
 ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
@@ -13,9 +14,10 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "Event": (SymbolKind.EVENT,),
     "Task": (SymbolKind.TASK,),
     "Requirement": (SymbolKind.REQUIREMENT,),
+    "Predicate": (SymbolKind.PREDICATE,),
     "Template": (SymbolKind.TEMPLATE,),
-    "Variable": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE),
-    "Term": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE, *_ELEMENTS),
+    "Variable": (*VARIABLES, SymbolKind.PARAMETER),
+    "Term": (*VARIABLES, SymbolKind.PARAMETER, *_ELEMENTS),
     "Scene": (SymbolKind.SCENE,),
     "Composition": (SymbolKind.COMPOSITION,),
     "Object": (SymbolKind.OBJECT,),

@@ -12,7 +12,7 @@ from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.indirect_names import instance_parts, targets_in
 from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.names.namespaces import namespace_of
-from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.roles import VARIABLES
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.tree import Namespace
 
@@ -193,4 +193,7 @@ def local_name(symbol: Symbol) -> str:
     if symbol.kind is SymbolKind.TREE_NODE:
         # A node may have the same name as the behaviour that it executes.
         return f"node-{symbol.path}"
-    return f"var-{symbol.name}" if symbol.kind in ROLE_KINDS["Variable"] else symbol.name
+    if symbol.kind is SymbolKind.PARAMETER:
+        # Templates of a namespace share variables; each predicate has parameters of its own.
+        return f"parameter-{symbol.path}"
+    return f"var-{symbol.name}" if symbol.kind in VARIABLES else symbol.name

@@ -145,10 +145,14 @@ class _Collector:
             case _:
                 pass
 
-    def _phrase(self, node: tree.PhraseUse | tree.TextPredicate, bound: Mapping[str, Bound]) -> None:
+    def _phrase(self, node: tree.PhraseUse | tree.TextPredicate | tree.NamedUse, bound: Mapping[str, Bound]) -> None:
         if isinstance(node, tree.TextPredicate):
             refs = [(argument.value, ANYTHING) for argument in node.arguments]
             phrase = "pred(…)"
+        elif isinstance(node, tree.NamedUse):
+            # What its parameters take depends on another declaration.
+            refs = [(value, ANYTHING) for value in node.values if isinstance(value, tree.Ref)]
+            phrase = node.predicate.path
         else:
             self.phrases.append(node)
             slots, phrase = slot_kinds(node.word), phrase_words(node.word)

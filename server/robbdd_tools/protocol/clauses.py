@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.joint_condition import joint_arguments, joint_predicate, parts_of
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.protocol.named_predicates import plain_predicate, predicate_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Behaviour, Predicate
@@ -150,7 +151,11 @@ def to_plain(statement: Statement) -> dict[str, Any]:
     """Return a statement as its JSON form."""
     match statement:
         case Fluent(predicate, arguments):
-            return {"predicate": predicate.name, "arguments": _plain_arguments(arguments), **_leaf(statement)}
+            return {
+                "predicate": plain_predicate(predicate),
+                "arguments": _plain_arguments(arguments),
+                **_leaf(statement),
+            }
         case Text(words):
             return {"text": words, **_leaf(statement)}
         case Junction(operator, operands):
@@ -184,11 +189,11 @@ def _clause(data: Mapping[str, Any]) -> Clause:
     match data:
         case {"operator": "and" | "or" | "not" as operator, "operands": operands}:
             return Junction(operator, tuple(map(_clause, operands)))
-        case {"predicate": str(name), "arguments": arguments, "time": time}:
+        case {"predicate": str() | {} as stated, "arguments": arguments, "time": time}:
             found = _time(time)
             if found is None:
                 raise ValueError(f"{data!r} has no time constraint")
-            predicate, condition = load_catalog().predicates[name], _condition(data)
+            predicate, condition = predicate_of(stated), _condition(data)
             return Fluent(
                 predicate, _arguments(arguments), found, data.get("iri", ""), data.get("named", {}), condition
             )
@@ -211,13 +216,12 @@ def _condition(data: Mapping[str, Any]) -> Condition | None:
     if found is None:
         return None
     parts = found.get("all", [found])
-    catalog = load_catalog()
-    each = [Condition(catalog.predicates[one["predicate"]], _arguments(one["arguments"])) for one in parts]
+    each = [Condition(predicate_of(one["predicate"]), _arguments(one["arguments"])) for one in parts]
     return joint_condition(each)
 
 
 def _plain_condition(condition: Condition) -> dict[str, Any]:
-    return {"predicate": condition.predicate.name, "arguments": _plain_arguments(condition.arguments)}
+    return {"predicate": plain_predicate(condition.predicate), "arguments": _plain_arguments(condition.arguments)}
 
 
 def _plain_arguments(arguments: Mapping[str, Filler]) -> dict[str, object]:

@@ -25,6 +25,7 @@ from robbdd_tools.graph.acceptance_model import (
 )
 from robbdd_tools.graph.acceptance_model import DefinedEvent as ModelEvent
 from robbdd_tools.graph.read.clauses import named_elements, names_in_events, used_names
+from robbdd_tools.graph.read.named_predicates import required_parts
 from robbdd_tools.monitor.policy import Observation, Policy
 from robbdd_tools.protocol.clauses import BehaviourCall, DefinedEvent, EventOccurrence, leaves_of
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
@@ -270,6 +271,7 @@ def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values)
         match clause:
             case Fluent(role="given"):
                 yield clause, values
+                yield from ((part, values) for part in required_parts(clause))
             case Junction(operator="and"):
                 yield from _givens(model, clause.operands, values)
             case ForAll():

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from robbdd_tools.syntax.predicate_tree import NamedUse, PhraseUse
 from robbdd_tools.syntax.scene_tree import (
     Name,
     NamespaceArgument,
     Node,
     Number,
     PythonAttribute,
-    Quantity,
     Ref,
     Text,
     Where,
@@ -64,18 +64,6 @@ class Variable(Node):
     is_set: bool
 
 
-Argument = Ref | Name | Quantity | Number | Text
-"""A reference, a bare name or a literal in a slot of a phrase."""
-
-
-@dataclass(frozen=True, slots=True)
-class PhraseUse(Node):
-    """A catalog phrase with the values of its slots: ``word`` is the predicate's or behaviour's name."""
-
-    word: str
-    arguments: tuple[tuple[str, Argument], ...]
-
-
 @dataclass(frozen=True, slots=True)
 class TextArgument(Node):
     """``name=<variable>`` inside ``pred(…)``."""
@@ -100,8 +88,8 @@ class Fluent(Node):
     """
 
     name: Name
-    predicate: PhraseUse | TextPredicate
-    conditions: tuple[PhraseUse, ...]
+    predicate: PhraseUse | TextPredicate | NamedUse
+    conditions: tuple[PhraseUse | NamedUse, ...]
     time: TimeConstraint
     verifies: tuple[Ref, ...]
 
@@ -240,7 +228,7 @@ class DefinedEvent(Node):
     """``event name when conditions [for h seconds]``: occurs when all conditions become true."""
 
     name: Name
-    conditions: tuple[PhraseUse, ...]
+    conditions: tuple[PhraseUse | NamedUse, ...]
     seconds: Number | Ref | None
 
 

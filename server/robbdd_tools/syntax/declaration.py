@@ -26,6 +26,8 @@ class SymbolKind(StrEnum):
     WORKSPACE_SET = "workspace set"
     AGENT_SET = "agent set"
     CONSTANT_SET = "constant set"
+    PREDICATE = "predicate"
+    PARAMETER = "parameter"
     COMPOSITION = "composition"
     SCENE = "scene"
     TEMPLATE = "scenario template"

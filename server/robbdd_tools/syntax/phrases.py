@@ -17,14 +17,14 @@ _PIECE = re.compile(r"<(?P<slot>\w+)>|\$(?P<name>\w+)|#(?P<quantity>\w+)|(?P<wor
 def phrase_rules(catalog: Catalog) -> str:
     """Return the rules ``Predicate``, ``Condition`` and ``Action`` with one alternative per phrase of the catalog.
 
-    A condition is a predicate that the catalog can judge at each sample, so it is neither a text nor about a duration.
+    A condition is a predicate that can be judged at each sample, so it is neither a text nor about a duration.
     """
     predicates = dict(_phrases(PREDICATE_RULE, catalog.predicates))
     actions = dict(_phrases(ACTION_RULE, catalog.behaviours))
     rules = [f"Predicate: {' | '.join(['TextPredicate', *_longest_first(predicates)])};"]
     of_states = {name: word for name, word in catalog.predicates.items() if word.duration is None}
     conditions = dict(_phrases(PREDICATE_RULE, of_states))
-    rules.append(f"Condition: {' | '.join(_longest_first(conditions))};")
+    rules.append(f"Condition: {' | '.join([*_longest_first(conditions), 'NamedUse'])};")
     rules.append(f"Action: {' | '.join(_longest_first(actions))};")
     words = {**catalog.predicates, **catalog.behaviours}
     for name, phrase in (predicates | actions).items():

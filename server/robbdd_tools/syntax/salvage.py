@@ -25,6 +25,7 @@ _HEADERS = (
     (re.compile(r"Event\b" + _NAMED), SymbolKind.EVENT),
     (re.compile(r"Task\b" + _NAMED), SymbolKind.TASK),
     (re.compile(r"Requirement\b" + _NAMED), SymbolKind.REQUIREMENT),
+    (re.compile(r"Predicate\b" + _NAMED), SymbolKind.PREDICATE),
     (re.compile(r"Behaviour\s+Tree\b" + _NAMED), SymbolKind.BEHAVIOUR_TREE),
     (re.compile(r"const\s+set" + _NAMED), SymbolKind.CONSTANT_SET),
     (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),

@@ -18,8 +18,8 @@ from robbdd_tools.syntax.peg import BLANK, literal_pattern
 
 NAME = "Name"
 """The rule of each name that a declaration declares."""
-GENERATING = frozenset({"BareBehaviour", "BareFluent", "SimilarSet", "UnnamedFluent"})
-"""Rules of declarations that also declare names that are not in their text."""
+GENERATING = frozenset({"BareBehaviour", "BareFluent", "SimilarSet", "Subject", "UnnamedFluent"})
+"""Rules of declarations that also declare names that are not in their text, or before their own name."""
 _GROUP = re.compile(r"(?<!\\)\((?!\?)")
 
 

@@ -31,6 +31,7 @@ _STARTERS = {
     "bdd": (
         *_SHARED_STARTERS,
         rf"(?:Event|Task|Requirement)(?:\s*\(|\s+{_NAME})",
+        rf"Predicate(?:\s*[(<]|\s+{_NAME})",
         r"Behaviour\s+Tree\b",
         r"const\s+set\b",
         r"Scenario\s+Template\b",

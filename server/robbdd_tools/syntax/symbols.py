@@ -25,6 +25,7 @@ _TOP: dict[type[tree.Node], SymbolKind] = {
     tree.Task: SymbolKind.TASK,
     tree.Requirement: SymbolKind.REQUIREMENT,
     tree.ConstantSet: SymbolKind.CONSTANT_SET,
+    tree.NamedPredicate: SymbolKind.PREDICATE,
     tree.Composition: SymbolKind.COMPOSITION,
     tree.Scene: SymbolKind.SCENE,
     tree.Template: SymbolKind.TEMPLATE,
@@ -69,6 +70,9 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
                 name = f"{root.base.text}{index}"
                 kind = SymbolKind(root.kind)
                 yield Symbol(f"{path}.{name}", name, kind, root.base.span, root.span, namespace)
+        case tree.NamedPredicate():
+            for parameter in root.parameters:
+                yield _symbol(path, parameter.name, SymbolKind.PARAMETER, parameter.span, namespace)
         case tree.Template():
             for variable in root.variables:
                 kind = SymbolKind.SET_VARIABLE if variable.is_set else SymbolKind.VARIABLE
@@ -170,7 +174,7 @@ def _collect(node: tree.Node, scopes: tuple[str, ...], found: list[Reference]) -
     if isinstance(node, tree.Ref):
         found.append(Reference(node, scopes))
         return
-    if isinstance(node, tree.Template | tree.Story | tree.KinematicTree | tree.SceneInstance):
+    if isinstance(node, tree.Template | tree.Story | tree.NamedPredicate | tree.KinematicTree | tree.SceneInstance):
         scopes = (node.name.text,)
     elif isinstance(node, tree.Variant | tree.Graph | tree.RigidBody):
         scopes = (f"{scopes[0]}.{node.name.text}", *scopes)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robbdd_tools.syntax.bdd_tree import (
-    Argument,
     BehaviourTree,
     BehaviourUse,
     Body,
@@ -20,7 +19,6 @@ from robbdd_tools.syntax.bdd_tree import (
     Further,
     Negation,
     Occurrence,
-    PhraseUse,
     Requirement,
     Story,
     Task,
@@ -91,6 +89,19 @@ from robbdd_tools.syntax.kinematics_tree import (
     TreeUse,
     Vector,
 )
+from robbdd_tools.syntax.predicate_tree import (
+    AllStates,
+    AnyState,
+    Argument,
+    NamedPredicate,
+    NamedUse,
+    NegatedState,
+    Parameter,
+    ParameterPiece,
+    PhrasePiece,
+    PhraseUse,
+    State,
+)
 from robbdd_tools.syntax.scene_tree import (
     CatalogEntry,
     Composition,
@@ -157,6 +168,7 @@ DeclarationTree = (
     | Event
     | Task
     | Requirement
+    | NamedPredicate
     | BehaviourTree
     | ConstantSet
     | Template
@@ -177,6 +189,8 @@ ChunkTree = DeclarationTree | Variant
 __all__ = [
     "Actuation",
     "After",
+    "AllStates",
+    "AnyState",
     "Argument",
     "Assignment",
     "Axes",
@@ -238,8 +252,11 @@ __all__ = [
     "ModelSource",
     "Modelled",
     "Name",
+    "NamedPredicate",
+    "NamedUse",
     "Namespace",
     "NamespaceArgument",
+    "NegatedState",
     "Negation",
     "Node",
     "Normal",
@@ -250,6 +267,9 @@ __all__ = [
     "Orientation",
     "PairFriction",
     "ParallelChains",
+    "Parameter",
+    "ParameterPiece",
+    "PhrasePiece",
     "PhraseUse",
     "Polarity",
     "Policy",
@@ -280,6 +300,7 @@ __all__ = [
     "SetList",
     "SimilarSet",
     "SimulatedStates",
+    "State",
     "Story",
     "StringMapper",
     "StringMapping",

@@ -42,6 +42,10 @@ MEMBERSHIPS = {
 }
 """Kind of an element → class, property and IRI suffix of the node that makes it a member of a scene."""
 JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
+NAMED_USE = "rbw:NamedPredicateUse"
+"""Class of a clause, or of a condition, whose predicate the model itself defines."""
+STATES = {"and": "rbw:AllStates", "or": "rbw:AnyState", "not": "rbw:NegatedState"}
+"""Operator in the definition of a predicate → its class."""
 COMPOSITES = {"sequence": "bt:Sequence", "selector": "bt:Selector"}
 """Kind of a behaviour tree's composite → its class."""
 SELECTIONS = {"combinations": "bdd:Combination", "permutations": "bdd:Permutation"}

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
@@ -29,11 +28,13 @@ from robbdd_tools.graph.rdf.vocabulary import (
     EVENT_LIST,
     HORIZON_VARIABLE,
     JUNCTIONS,
+    NAMED_USE,
     OCCURRENCE,
     SOME_TIME,
     TOGETHER,
     expand,
 )
+from robbdd_tools.graph.read.named_predicates import elements_named, read_arguments, read_use
 from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -41,8 +42,6 @@ if TYPE_CHECKING:
 
     from robbdd_tools.catalog.api import Slot
 
-_LITERALS = (Kind.QUANTITY, Kind.VALUE)
-"""Kinds of slots that a literal may fill instead of a variable."""
 ROLES = {"bdd:Given": "given", "bdd:When": "when", "bdd:Then": "then"}
 
 
@@ -91,6 +90,10 @@ class ClauseReader:
     def _fluent(self, iri: Iri, role: str) -> Fluent | TextFluent:
         if self.records.is_a(iri, "bdd:StringTemplatePredicate"):
             return self._text_fluent(iri, role)
+        if self.records.is_a(iri, NAMED_USE):
+            named, arguments = read_use(self.records, iri)
+            time, conditions = self.time(iri), self._conditions(iri, "rbw:whenever")
+            return Fluent(iri, role, named.name, arguments, time, conditions, self._seconds(iri), named)
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
                 arguments = self._arguments(iri, word.slots)
@@ -123,9 +126,13 @@ class ClauseReader:
     def _conditions(self, owner: Iri, term: str) -> tuple[Condition, ...]:
         """Return the conditions of a clause or event. The numbers of generated names are their order."""
         nodes = self.records.iris(self.records.all(owner, term))
-        return tuple(self._condition(node) for node in sorted(nodes, key=lambda node: (len(node), node)))
+        return tuple(self.condition(node) for node in sorted(nodes, key=lambda node: (len(node), node)))
 
-    def _condition(self, iri: Iri) -> Condition:
+    def condition(self, iri: Iri) -> Condition:
+        """Return a condition of a clause or event, or one in the definition of a predicate. Raises ``Incomplete``."""
+        if self.records.is_a(iri, NAMED_USE):
+            named, arguments = read_use(self.records, iri)
+            return Condition(iri, named.name, arguments, named)
         for word in load_catalog().predicates.values():
             if self.records.is_a(iri, word.rdf_type):
                 return Condition(iri, word.name, self._arguments(iri, word.slots))
@@ -153,15 +160,7 @@ class ClauseReader:
             yield self.records.text(emission, "rbw:moment"), self.records.one(emission, "rbw:event")
 
     def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
-        return {
-            slot.name: self.records.text(iri, slot.property)
-            if slot.kind is Kind.NAME or (slot.kind in _LITERALS and self._has_literal(iri, slot.property))
-            else self.records.one(iri, slot.property)
-            for slot in slots
-        }
-
-    def _has_literal(self, iri: Iri, term: str) -> bool:
-        return len(self.records.iris(self.records.all(iri, term))) < len(self.records.all(iri, term))
+        return read_arguments(self.records, iri, slots)
 
     def time(self, iri: Iri) -> TimeConstraint:
         """Return the time constraint that a node describes."""
@@ -207,6 +206,7 @@ def names_in_events(events: Iterable[DefinedEvent]) -> Iterator[Iri]:
         yield from [] if event.variable is None else [event.variable]
         arguments = (one for condition in event.conditions for one in condition.arguments.values())
         yield from (argument for argument in arguments if isinstance(argument, Iri))
+        yield from (element for condition in event.conditions for element in elements_named(condition.named))
 
 
 def named_elements(model: AcceptanceModel, variant: Variant) -> tuple[Iri, ...]:
@@ -224,6 +224,9 @@ def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
                 conditions = () if isinstance(clause, BehaviourClause) else clause.conditions
                 values = (*clause.arguments.values(), *(one for each in conditions for one in each.arguments.values()))
                 yield from (argument for argument in values if isinstance(argument, Iri))
+                own = clause.named if isinstance(clause, Fluent) else None
+                for named in (own, *(condition.named for condition in conditions)):
+                    yield from elements_named(named)
             case Junction():
                 yield from used_names(clause.operands)
             case ForAll() | Exists():

@@ -80,10 +80,42 @@ def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]
     return tuple(word for word in catalog.predicates.values() if expand(word.rdf_type) in types)
 
 
+def _add_named(records: Records, use: Iri, roles: Roles, inside: tuple[Iri, ...] = ()) -> None:
+    """Add the kinds of what fills the parameters of a named predicate: those of the parameters in its definition."""
+    for predicate in records.iris(records.all(use, "rbw:named-predicate")):
+        if predicate in inside:
+            continue
+        own = Roles()
+        for state in states_below(records, records.iris(records.all(predicate, "rbw:defined-as"))):
+            _add_named(records, state, own, (*inside, predicate))
+            for word in words_of(records, state):
+                for slot in word.slots:
+                    if slot.kind in ELEMENT_OF_KIND or slot.dimension:
+                        for parameter in records.iris(records.all(state, slot.property)):
+                            own.add(parameter, [slot.dimension or ELEMENT_OF_KIND[slot.kind]])
+        parameters = items_of(records, predicate, "rbw:parameters")
+        for parameter, value in zip(parameters, items_of(records, use, "rbw:argument-list"), strict=False):
+            for filler in records.iris([value]):
+                roles.add(filler, own.kinds.get(str(parameter), {}))
+
+
+def states_below(records: Records, states: Iterable[Iri]) -> Iterator[Iri]:
+    """Yield the nodes of the definition of a predicate once, outer ones first."""
+    seen: dict[Iri, None] = {}
+    waiting = list(states)
+    while waiting:
+        state = waiting.pop(0)
+        if state not in seen:
+            seen[state] = None
+            waiting += records.iris(items_of(records, state, "rbw:operands"))
+            yield state
+
+
 def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
     """Return the kinds of variables. The kinds of a quantified variable also apply to the elements of its set."""
     roles = Roles()
     for clause in clauses:
+        _add_named(records, clause, roles)
         for word in words_of(records, clause):
             for slot in word.slots:
                 if slot.kind in ELEMENT_OF_KIND or slot.dimension:

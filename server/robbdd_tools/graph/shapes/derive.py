@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.data import data_file
 from robbdd_tools.graph.acceptance_model import Iri
 from robbdd_tools.graph.rdf.records import Records, elements_of, items_of
-from robbdd_tools.graph.rdf.vocabulary import SELECTIONS, TIME_TYPES, expand
+from robbdd_tools.graph.rdf.vocabulary import NAMED_USE, SELECTIONS, TIME_TYPES, expand
 from robbdd_tools.graph.read.variable_roles import clauses_below, roles_in, words_of
 from robbdd_tools.graph.shapes.assignments import add_assignments, add_quantified
 from robbdd_tools.graph.shapes.derived import Derived, use_of
@@ -65,8 +65,17 @@ def _add_words(derived: Derived) -> None:
         for word in words_of(records, clause):
             derived.add(clause, "rdf:type", use_of(word.name))
             derived.add(clause, "rbw:predicate", use_of(word.name))
+        if records.is_a(clause, NAMED_USE):
+            derived.add(clause, "rbw:predicate", expand(NAMED_USE))
+            derived.add(clause, "rbw:values", len(items_of(records, clause, "rbw:argument-list")))
+            for predicate in records.iris(records.all(clause, "rbw:named-predicate")):
+                derived.add(clause, "rbw:wanted-values", len(items_of(records, predicate, "rbw:parameters")))
         if records.is_a(clause, "bdd:StringTemplatePredicate"):
             derived.add(clause, "rbw:predicate", expand("bdd:StringTemplatePredicate"))
+    # A parameter fills a slot as a variable does.
+    for parameter in records.instances("rbw:Parameter"):
+        for kind in ("bdd:ScenarioVariable", "bdd:Set"):
+            derived.add(parameter, "rdf:type", expand(kind))
     for clause in (*records.instances("bdd:FluentClause"), *records.instances("rbw:TextClause")):
         for kind in TIME_TYPES.values():
             if records.is_a(clause, kind):

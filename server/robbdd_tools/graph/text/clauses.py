@@ -24,7 +24,9 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
 )
 from robbdd_tools.graph.rdf.records import Incomplete, items_of
+from robbdd_tools.graph.rdf.vocabulary import STATES
 from robbdd_tools.graph.read.clauses import ClauseReader
+from robbdd_tools.graph.text.named_predicates import named_phrase
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.graph.text.property_text import set_reference
 from robbdd_tools.graph.text.requirements import verified
@@ -139,6 +141,8 @@ class ClauseText:
         return verified(self.names, clause.iri, " verifies")
 
     def _predicate(self, clause: Fluent | TextFluent) -> str:
+        if isinstance(clause, Fluent) and clause.named is not None:
+            return named_phrase(self.names, clause.named, clause.iri, self._variable)
         if isinstance(clause, Fluent):
             return self._phrase(load_catalog().predicates[clause.predicate], clause.iri, clause.arguments)
         for name in clause.arguments:
@@ -160,8 +164,24 @@ class ClauseText:
     def _conditions(self, conditions: Sequence[Condition], kind: str, name: str) -> str:
         for number, one in enumerate(conditions):
             self._named(one.iri, kind, f".{name}{f'.{number}' if number else ''}")
-        words = load_catalog().predicates
-        return " and ".join(self._phrase(words[one.predicate], one.iri, one.arguments) for one in conditions)
+        return " and ".join(map(self._one_condition, conditions))
+
+    def _one_condition(self, condition: Condition) -> str:
+        if condition.named is not None:
+            return named_phrase(self.names, condition.named, condition.iri, self._variable)
+        return self._phrase(load_catalog().predicates[condition.predicate], condition.iri, condition.arguments)
+
+    def state(self, node: Iri) -> str:
+        """Return a part of the definition of a named predicate. Raises ``Incomplete``."""
+        records = self.names.records
+        for operator, kind in STATES.items():
+            if records.is_a(node, kind):
+                parts = [self.state(Iri(str(one))) for one in records.list_of(node, "rbw:operands")]
+                return f"( not {parts[0]} )" if operator == "not" else self._grouped(operator, parts)
+        return self._one_condition(ClauseReader(records).condition(node))
+
+    def _grouped(self, operator: str, parts: list[str]) -> str:
+        return "(\n" + indented(f"\n{operator} ".join(parts)) + "\n)"
 
     def _phrase(self, word: Predicate | Behaviour, iri: Iri, arguments: Mapping[str, Iri | str]) -> str:
         """Return the phrase of a clause, a condition or a behaviour; ``iri`` is its node."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,8 @@ from robbdd_tools.graph.rdf.vocabulary import EVENT_LIST
 from robbdd_tools.graph.read.acceptance import story_order
 from robbdd_tools.graph.read.clauses import ClauseReader, used_names
 from robbdd_tools.graph.text.behaviour_trees import tree_text
-from robbdd_tools.graph.text.clauses import template_text
+from robbdd_tools.graph.text.clauses import ClauseText, template_text
+from robbdd_tools.graph.text.named_predicates import declare_predicate, predicate_text
 from robbdd_tools.graph.text.names import Names, quoted
 from robbdd_tools.graph.text.requirements import requirement_texts
 from robbdd_tools.graph.text.scenes import SceneText
@@ -98,7 +99,7 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
     for node in stories:
         names.declare(node, "story")
     reader = ClauseReader(records)
-    blocks: list[str] = []
+    blocks: list[str] = list(_predicates(names, left_out))
     for node in records.instances("bt:BehaviourTree"):
         try:
             blocks.append(tree_text(names, node) + "\n")
@@ -125,6 +126,28 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
         for node in names.declared.get(kind, ())
     ]
     return _Criteria([*simple, *requirements, *sets, "", *blocks], left_out)
+
+
+def _predicates(names: Names, left_out: dict[str, str]) -> Iterator[str]:
+    """Yield the declarations of the named predicates. All of them are declared first, since they use each other."""
+    declared: list[Iri] = []
+    for node in names.records.instances("rbw:NamedPredicate"):
+        try:
+            declare_predicate(names, node)
+            declared.append(node)
+        except Incomplete as error:
+            left_out[node] = str(error)
+    for node in declared:
+        try:
+            owner, namespace = names.paths[node], names.split(node)[0]
+            yield (
+                predicate_text(
+                    names, node, lambda state, own, at=(owner, namespace): ClauseText(names, *at, own).state(state)
+                )
+                + "\n"
+            )
+        except Incomplete as error:
+            left_out[node] = str(error)
 
 
 def _variables(records: Records, reader: ClauseReader, template: Iri) -> list[Iri]:

@@ -26,6 +26,7 @@ from robbdd_tools.graph.write.identities import SHARED, Identities, identities
 from robbdd_tools.graph.write.imported_faults import imported_faults
 from robbdd_tools.graph.write.imported_graphs import NOTHING, ImportedGraph, imported_graph
 from robbdd_tools.graph.write.instances import add_instances
+from robbdd_tools.graph.write.named_predicates import add_named_predicate
 from robbdd_tools.graph.write.property_sets import PropertySets
 from robbdd_tools.graph.write.requirements import add_requirement, add_verified
 from robbdd_tools.graph.write.scenes import (
@@ -171,6 +172,8 @@ def _add_simple(frame: Frame, scenes: Scenes, root: tree.ChunkTree) -> None:
             add_requirement(frame, root)
         case tree.ConstantSet():
             _add_constant_set(frame, root)
+        case tree.NamedPredicate():
+            add_named_predicate(frame, root)
         case tree.BehaviourTree():
             add_behaviour_tree(frame, root)
         case tree.ElementSet():

@@ -18,6 +18,7 @@ from robbdd_tools.graph.rdf.vocabulary import (
     TOGETHER,
 )
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
+from robbdd_tools.graph.write.named_predicates import add_arguments, add_predicate
 from robbdd_tools.graph.write.requirements import add_verified
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from rdflib import URIRef
     from rdflib.term import Node
 
-    from robbdd_tools.catalog.api import Slot
     from robbdd_tools.graph.write.property_sets import PropertySets
 
 MAX_NESTED = 100
@@ -130,9 +130,7 @@ class ClauseWriter:
         if isinstance(fluent.predicate, tree.TextPredicate):
             self._text_predicate(node, fluent.predicate)
         else:
-            word = load_catalog().predicates[fluent.predicate.word]
-            self._sink.add_types(node, [word.rdf_type], self.frame.at(fluent.name))
-            self._arguments(node, word.slots, fluent.predicate)
+            add_predicate(self.frame, node, fluent.predicate, fluent.name)
         self._conditions(node, "rbw:whenever", f"whenever-{self.owner}.{fluent.name.text}", fluent.conditions)
         self._time(node, fluent.time)
         add_verified(self.frame, node, fluent.verifies)
@@ -153,14 +151,15 @@ class ClauseWriter:
         if nodes:
             self._sink.add(template, EVENT_LIST, self._sink.make_list(nodes))
 
-    def _conditions(self, owner: URIRef, term: str, name: str, conditions: Sequence[tree.PhraseUse]) -> None:
+    def _conditions(
+        self, owner: URIRef, term: str, name: str, conditions: Sequence[tree.PhraseUse | tree.NamedUse]
+    ) -> None:
         """Write conditions as nodes of their owner. Further ones have the name of the first one and a number."""
         for number, condition in enumerate(conditions):
             node = self._sink.iri(f"{self.namespace}{name}{f'.{number}' if number else ''}")
-            word = load_catalog().predicates[condition.word]
             if node is not None:
-                self._sink.add_types(node, ["rbw:Condition", word.rdf_type], self.frame.at(condition))
-                self._arguments(node, word.slots, condition)
+                self._sink.add_types(node, ["rbw:Condition"], self.frame.at(condition))
+                add_predicate(self.frame, node, condition, condition)
                 self._sink.add(owner, term, node, self.frame.at(condition))
 
     def _text_predicate(self, node: URIRef, predicate: tree.TextPredicate) -> None:
@@ -239,7 +238,7 @@ class ClauseWriter:
         link_behaviour(self.frame, behaviour, use)
         self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))
         self._sink.add(node, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
-        self._arguments(node, word.slots, use.action)
+        add_arguments(self.frame, node, word.slots, use.action)
         if use.duration is not None:
             self._time(node, use.duration)
         self._emissions(node, use, path)
@@ -258,17 +257,6 @@ class ClauseWriter:
                 found.append(part)
         if found:
             sink.add(node, "rbw:emission-list", sink.make_list(found))
-
-    def _arguments(self, node: URIRef, slots: Iterable[Slot], phrase: tree.PhraseUse) -> None:
-        written = dict(phrase.arguments)
-        for slot in slots:
-            argument = written.get(slot.name)
-            if isinstance(argument, tree.Name):
-                self._sink.add(node, slot.property, self._sink.literal(argument.text), self.frame.at(argument))
-            elif isinstance(argument, tree.Quantity | tree.Number | tree.Text):
-                self._sink.add(node, slot.property, self._sink.value(argument), self.frame.at(argument))
-            elif argument is not None:
-                self._sink.add(node, slot.property, self.frame.target(argument), self.frame.at(argument))
 
     def _time(self, node: URIRef, time: tree.TimeConstraint) -> None:
         add_time(self.frame, node, time)
