@@ -15,11 +15,12 @@ from hypothesis import strategies as st
 from monitor.traces import STEP, still, trace_of
 from robbdd_tools.catalog.api import Kind, Predicate, Slot
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.monitor.compound import Combination, Definition, Operand, Passed, compound_predicate
+from robbdd_tools.monitor.compound import compound_predicate
 from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Operand, Passed
 from robbdd_tools.monitor.time import During
 from robbdd_tools.monitor.verdict import Outcome, Verdict
-from robbdd_tools.protocol.named_predicates import plain_predicate, predicate_of
+from robbdd_tools.protocol.plain_predicates import plain_predicate, predicate_of
 
 SIZE = 4
 VALUES = st.lists(st.sampled_from([2.0, 0.5, 0.0, -0.5, -2.0, nan]), min_size=SIZE, max_size=SIZE)

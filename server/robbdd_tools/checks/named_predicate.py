@@ -9,7 +9,7 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.quantity_units import QuantityError, read_quantity
 from robbdd_tools.checks.finding import article, change, finding, related_to, written_text
 from robbdd_tools.names.elements import Site
-from robbdd_tools.names.named_predicates import Taken, leads_back, predicate_of, taken_by
+from robbdd_tools.names.predicate_parameters import Taken, leads_back, predicate_of, taken_by
 from robbdd_tools.names.roles import VARIABLES
 from robbdd_tools.names.types import kind_words, variable_type
 from robbdd_tools.syntax import tree

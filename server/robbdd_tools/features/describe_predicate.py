@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.features.markdown import literal
 from robbdd_tools.features.sentences import state_sentence
-from robbdd_tools.names.named_predicates import taken_by
+from robbdd_tools.names.predicate_parameters import taken_by
 from robbdd_tools.names.types import kind_words
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.predicate_tree import written_phrase

@@ -24,7 +24,8 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
     every_clause,
 )
-from robbdd_tools.monitor.compound import Combination, Definition, Operand, Passed, definition_of
+from robbdd_tools.monitor.compound import definition_of
+from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Operand, Passed
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.protocol.time_words import time_words

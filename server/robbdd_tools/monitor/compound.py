@@ -6,69 +6,34 @@ holds throughout.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from robbdd_tools.base.quantity_units import UNITS, units_of
+from robbdd_tools.base.quantity_units import units_of
 from robbdd_tools.catalog.api import Kind, Predicate, Slot
+from robbdd_tools.monitor.predicate_definitions import (
+    Combination,
+    Defined,
+    Definition,
+    Element,
+    Operand,
+    Passed,
+    dimension_of,
+    unit_of,
+)
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
     from robbdd_tools.monitor.compound_samples import Samples
 
 Filled = TypeVar("Filled")
-_SLOT = re.compile(r"\"?\{(\w+)\}\"?")
 SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
-LEAST = -2.2250738585072014e-308
-"""The margin of the negation of a predicate whose margin is 0: that predicate holds, so its negation does not."""
 
 
 @dataclass(frozen=True, slots=True)
-class Passed:
-    """The parameter of a named predicate that fills a slot."""
-
-    parameter: str
-
-
-class Element(str):
-    """The IRI of an element in a definition, until it is shortened; as opposed to a value."""
-
-    __slots__ = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Operand:
-    """A predicate in the definition of another one. ``fillers`` maps its slots to parameters, elements and values."""
-
-    predicate: Predicate
-    fillers: Mapping[str, Passed | str]
-
-    def arguments(self, given: Arguments) -> Arguments:
-        """Return the arguments of the predicate. ``given`` are those of the predicate that it defines."""
-        return {
-            slot: given[filler.parameter] if isinstance(filler, Passed) else filler
-            for slot, filler in self.fillers.items()
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Combination:
-    """Definitions that are joined by ``and`` or ``or``, or one that is negated."""
-
-    operator: Literal["and", "or", "not"]
-    operands: tuple[Definition, ...]
-
-
-Definition = Operand | Combination
-
-
-@dataclass(frozen=True, slots=True)
-class CompoundEvaluator:
+class CompoundEvaluator(Defined):
     """Evaluates a definition."""
-
-    definition: Definition
 
     def __call__(self, evidence: Evidence, arguments: Arguments) -> FloatArray:
         """Return the margin at each sample, shape (n,), in the unit of ``unit``; NaN where the truth is unknown.
@@ -76,6 +41,7 @@ class CompoundEvaluator:
         Margins in several units cannot be compared: then it is 1 where the definition is true, and -1 where it is
         false.
         """
+        # Editors read definitions, too, and do not load numpy.
         from robbdd_tools.monitor.compound_samples import plain_margins
 
         return plain_margins(self.samples(evidence, arguments), self.unit(evidence, arguments))
@@ -167,21 +133,6 @@ def required(
         yield from within(definition, dict(arguments))
 
 
-def dimension_of(unit: str) -> str:
-    """Return what a unit measures; an unknown unit itself."""
-    return UNITS[unit][0] if unit in UNITS else unit
-
-
-def unit_of(predicate: Predicate, evidence: Evidence, arguments: Arguments) -> str:
-    """Return the unit of a predicate's margin; its usual one if that of the clause depends on missing evidence."""
-    if predicate.unit_for is None:
-        return predicate.unit
-    try:
-        return predicate.unit_for(evidence, arguments)
-    except LookupError:
-        return predicate.unit
-
-
 def leaves(definition: Definition, arguments: Arguments) -> Iterator[tuple[Predicate, Arguments]]:
     """Yield the predicates of the catalog in a definition with their arguments, in written order."""
     if isinstance(definition, Combination):
@@ -253,13 +204,3 @@ def changed(predicate: Predicate, arguments: Arguments, change: Change) -> Predi
         return replace(one, evaluate=evaluator, unit_for=CompoundUnit(evaluator))
 
     return renewed(predicate, arguments, 1)
-
-
-def words_of(predicate: Predicate, arguments: Arguments) -> str:
-    """Return a predicate with its arguments as words, as in a sentence of Gherkin."""
-
-    def shown(match: re.Match[str]) -> str:
-        filler = arguments.get(match[1], match[0])
-        return filler if isinstance(filler, str) else "[" + ", ".join(filler) + "]"
-
-    return _SLOT.sub(shown, predicate.sentence)

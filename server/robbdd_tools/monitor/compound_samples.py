@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.base.quantity_units import si_factor
-from robbdd_tools.monitor.compound import LEAST, Combination, CompoundEvaluator, dimension_of, unit_of, words_of
+from robbdd_tools.monitor.predicate_definitions import LEAST, Combination, Defined, dimension_of, unit_of, words_of
 from robbdd_tools.monitor.sample_verdicts import at_some_time, throughout, whenever
 from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray, Predicate
-    from robbdd_tools.monitor.compound import Definition
+    from robbdd_tools.monitor.predicate_definitions import (
+        LEAST,
+        Combination,
+        Defined,
+        Definition,
+        dimension_of,
+        unit_of,
+        words_of,
+    )
     from robbdd_tools.monitor.time import NoWindow
 
 
@@ -72,7 +80,7 @@ class _Evaluation:
                 joined = self._joined(joined, other, 1 if definition.operator == "and" else -1)
             return joined
         own, inner = definition.arguments(arguments), definition.predicate.evaluate
-        if isinstance(inner, CompoundEvaluator):
+        if isinstance(inner, Defined):
             return self.of(inner.definition, own)
         return self._leaf(definition.predicate, own)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.joint_condition import joint_arguments, joint_predicate, parts_of
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
-from robbdd_tools.protocol.named_predicates import plain_predicate, predicate_of
+from robbdd_tools.protocol.plain_predicates import plain_predicate, predicate_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Behaviour, Predicate

@@ -12,16 +12,8 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import Fluent, Iri
 from robbdd_tools.graph.rdf.records import Incomplete, Records
 from robbdd_tools.graph.rdf.vocabulary import NAMED_USE, STATES
-from robbdd_tools.monitor.compound import (
-    Combination,
-    Definition,
-    Element,
-    Operand,
-    Passed,
-    compound_predicate,
-    elements_in,
-    required,
-)
+from robbdd_tools.monitor.compound import compound_predicate, elements_in, required
+from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Element, Operand, Passed
 
 if TYPE_CHECKING:
     from rdflib.term import Node

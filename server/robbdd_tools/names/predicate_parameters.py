@@ -1,4 +1,4 @@
-"""What the parameters of named predicates take, inferred from their definitions."""
+"""Kinds of the parameters of named predicates, inferred from their definitions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 @dataclass(slots=True)
 class Taken:
-    """What a parameter takes: the kinds, the dimensions of quantities, and whether slots take a set as a whole."""
+    """Kinds that a parameter takes, dimensions of its quantities, and whether slots take a set as a whole."""
 
     kinds: Kinds = ANYTHING
     dimensions: set[str] = field(default_factory=set[str])

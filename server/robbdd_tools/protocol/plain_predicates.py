@@ -7,14 +7,8 @@ from typing import Any
 
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.monitor.compound import (
-    Combination,
-    Definition,
-    Operand,
-    Passed,
-    compound_predicate,
-    definition_of,
-)
+from robbdd_tools.monitor.compound import compound_predicate, definition_of
+from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Operand, Passed
 
 
 def plain_predicate(predicate: Predicate) -> str | dict[str, Any]:
