@@ -66,6 +66,12 @@ def test_a_cluster_gives_the_results_of_one_machine_and_refuses_other_versions(
     assert "there is no scheduler at" in capsys.readouterr().err
 
 
+@pytest.fixture(autouse=True)
+def _(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A worker forbids users' code in its process, which is the one of the tests here."""
+    monkeypatch.setenv(NO_USER_CODE, "")
+
+
 def test_versions_that_differ_are_named() -> None:
     assert list(differences(versions(), versions())) == []
     there = {**versions(), "numpy": "1.0", "Python": "2.7", "words-of-others": "3"}
@@ -92,7 +98,6 @@ def test_a_worker_needs_nothing_but_the_package_and_runs_users_code_only_with_it
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     part, used, prepared = prepared_part(tmp_path, "external", tmp_path / "run")
-    monkeypatch.setenv(NO_USER_CODE, "")
     refused = execute_part(part, used, prepared, tmp_path / "worker", lambda: True)
     assert "a behaviour is the process 'python policy.py': its owner allows users' code by starting it with" in (
         refused.refused

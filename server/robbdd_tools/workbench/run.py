@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.plan import Plan
 
 Listener = Callable[["RunMessage"], None]
+Reason = str
+"""Why executions were left open; empty if none was."""
 
 
 class Run(Recorded):
@@ -147,8 +149,8 @@ class Run(Recorded):
             if self._recording.take(message, host):
                 self.progress.apply(message)
 
-    def conclude(self, ending: str = "") -> None:
-        """End a run whose messages were received. ``ending`` is the reason for open executions."""
+    def conclude(self, ending: Reason) -> None:
+        """End a run whose messages were received."""
         self.ending = ending
         self._conclude()
 
