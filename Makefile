@@ -21,10 +21,8 @@ lint: $(READY)
 	$(BIN)/pyright
 
 # The VSIX is packed by a test, too, which needs the client's packages.
-# Tests wait for processes a third of their time, so there are three workers for two cores.
-test-python: WORKERS := $(shell $(PYTHON) -c "import os; print(max(2, (os.cpu_count() or 1) * 3 // 2))")
 test-python: $(READY) $(CLIENT_READY)
-	$(BIN)/pytest -m "not workbench" --numprocesses $(WORKERS) --dist worksteal
+	$(BIN)/pytest -m "not workbench" --numprocesses logical --dist worksteal
 
 test-client: $(CLIENT_READY)
 	cd $(CLIENT) && npm run --silent lint && npm test --silent
