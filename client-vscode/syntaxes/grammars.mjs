@@ -121,6 +121,11 @@ const bdd = grammar("RobBDD", "source.robbdd", [
     match: String.raw`(?<![\p{L}\p{N}_-])(event)\s+(${NAME})(?=\s+when(?![\p{L}\p{N}_-]))`,
     captures: { 1: { name: `${DECLARE}.robbdd` }, 2: { name: "variable.other.constant.robbdd" } },
   },
+  // The name of a predicate that the model defines, behind its subject: '<part> is-stored in <bin>'.
+  {
+    match: String.raw`(?<=>\s)([\p{L}_][\p{L}\p{N}_]*-[\p{L}\p{N}_-]*)(?=[\s:,])`,
+    captures: { 1: { name: `${PHRASE}.predicate.robbdd` } },
+  },
   phrases(`${WORD}.time`, "when"),
   declaration(WORD, "entity.name.type.behaviour", "sequence", "selector"),
   declaration(WORD, "variable.other.property", "node"),
