@@ -18,7 +18,8 @@ from types import ModuleType
 from typing import Any
 
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
-from robbdd_tools.lsp import assistance, handlers, main, preview, server, tokens
+from robbdd_tools.gherkin import preview
+from robbdd_tools.lsp import assistance, handlers, main, server, tokens
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.names.project import Snapshot
