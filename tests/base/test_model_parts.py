@@ -92,7 +92,9 @@ def test_the_engine_finds_the_same_names_and_limits(tmp_path: Path, path: Path |
         "actuator": spec.actuators,
     }
     for kind, things in engine.items():
-        assert sorted(one.name for one in parts.names(kind)) == sorted(one.name for one in things if one.name), kind
+        read, built = ({one.name for one in named if one.name} for named in (parts.names(kind), things))
+        # Names of attached models are not in the text, and no name is reported as wrong then.
+        assert read == built if parts.is_complete else read <= built, kind
     model: Any = spec.compile()
     for joint in parts.names("joint"):
         stated = next((fact for fact in joint.facts if fact.startswith("range ")), None)

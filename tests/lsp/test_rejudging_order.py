@@ -25,6 +25,7 @@ class Server:
         self.results = [SimpleNamespace(run=1, finished=True, model=model, index=0) for model in (MODEL, OTHER)]
         self.settings = self.stores = self
         self.project = self
+        self.sources = SimpleNamespace(texts=dict[str, str])
         self.text = ""
         self.looks = 0
         self.ready = threading.Event()
