@@ -68,11 +68,14 @@ def truth(definition: Definition, row: int) -> bool | None:
 
 
 def value(definition: Definition, row: int) -> float:
-    """The margin at one sample, if all margins are known and have one unit."""
+    """The margin at one sample, if all margins have one unit; ``nan`` if one of them is unknown."""
     if isinstance(definition, Operand):
         assert isinstance(definition.predicate.evaluate, Fixed)
         return definition.predicate.evaluate.margins[row]
     found = [value(one, row) for one in definition.operands]
+    # The smallest of numbers of which one is nan depends on their order.
+    if any(map(isnan, found)):
+        return nan
     return -found[0] if definition.operator == "not" else min(found) if definition.operator == "and" else max(found)
 
 

@@ -44,9 +44,12 @@ def _definition(data: Mapping[str, Any]) -> Definition:
         case {"predicate": predicate, "fillers": fillers}:
             found: Mapping[str, Any] = fillers
             return Operand(predicate_of(predicate), {slot: _filler(filler) for slot, filler in found.items()})
-        case {"and": operands} | {"or": operands} | {"not": operands}:
-            (operator,) = data
-            return Combination(operator, tuple(map(_definition, operands)))  # pyright: ignore[reportArgumentType]
+        case {"and": operands}:
+            return Combination("and", tuple(map(_definition, operands)))
+        case {"or": operands}:
+            return Combination("or", tuple(map(_definition, operands)))
+        case {"not": operands}:
+            return Combination("not", tuple(map(_definition, operands)))
         case _:
             raise ValueError(f"{data!r} does not define a predicate")
 
