@@ -99,8 +99,13 @@ class SourceDocuments:
     def learn(self, named: Mapping[str, frozenset[str]]) -> None:
         """Take note of the files that models name, and subscribe to their texts."""
         if any(self._named.get(model, frozenset()) != files for model, files in named.items()):
+            before = frozenset(uri for files in self._named.values() for uri in files)
             self._named |= named
             self._server.spawn(self._subscribe())
+            # Texts that were edited before it was known that a model names them.
+            late = [uri for files in named.values() for uri in files - before if uri in self._texts]
+            if late:
+                self._server.spawn(self.changed(late))
 
     async def _subscribe(self) -> None:
         """Ask the client for the texts of the named files that exist, and no longer for those of others."""
