@@ -106,3 +106,10 @@ def test_the_copies_of_a_similar_set_get_one_entry() -> None:
     assert fix.new_file is not None or fix.edits
     apply(case, fix)
     assert all("'washer" not in one.message for one in reported(case))
+
+
+def test_what_carries_a_nested_workspace_is_simulated_too() -> None:
+    scene = SCENE.replace("object tray }", "object dish }").replace("<furniture.tray>", "<furniture.dish>")
+    nested = scene.replace("ws comp <bench_comp> ws comp <tray_comp>", "ws comp <bench_comp>")
+    assert nested != scene
+    assert words(with_scene(nested))["dish"] == "WARNING"

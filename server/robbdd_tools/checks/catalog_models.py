@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.names.elements import Element, Site, scene_members
+from robbdd_tools.names.elements import Element, Site, simulated_members
 from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.syntax import tree
 
@@ -29,7 +29,7 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
         scene = placed.declaration.tree
         if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
             continue
-        chosen = _chosen(scene_members(Site(snapshot, file, placed)) or frozenset())
+        chosen = _chosen(simulated_members(Site(snapshot, file, placed)))
         if chosen:
             named = "; ".join(f"{', '.join(names)} as {model}" for model, names in sorted(chosen.items()))
             message = f"without a .scenex this scene runs on models of the catalog, by name: {named}"

@@ -16,7 +16,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import listed
 from robbdd_tools.checks.model_name import parts_of
 from robbdd_tools.checks.scene_use import used_elements
-from robbdd_tools.names.elements import Element, Site, elements_of, scene_members
+from robbdd_tools.names.elements import Element, Site, elements_of, simulated_members
 from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -57,7 +57,7 @@ def gaps_of(scene: Site) -> list[Gap]:
     """Return the elements of a scene without a model; empty if a model of the whole scene may contain them."""
     if not isinstance(scene.tree, tree.Scene):
         return []
-    unfit = [element for element in sorted(scene_members(scene) or (), key=lambda one: one.key) if not _fits(element)]
+    unfit = [element for element in sorted(simulated_members(scene), key=lambda one: one.key) if not _fits(element)]
     if not unfit:
         return []
     instances = list(scene_instances(scene))

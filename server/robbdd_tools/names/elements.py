@@ -143,6 +143,33 @@ def scene_members(site: Site | None) -> frozenset[Element] | None:
     return frozenset(found)
 
 
+def simulated_members(site: Site) -> frozenset[Element]:
+    """Return the elements of a scene that a simulation places: its members, and the objects of nested compositions.
+
+    A workspace needs the objects that carry it, at any depth. Empty if the members are not completely known.
+    """
+    members = scene_members(site)
+    if members is None or not isinstance(site.tree, tree.Scene):
+        return frozenset()
+    found = set(members)
+    seen: set[tuple[str, int]] = set()
+    waiting = [site.follow(entry.reference) for entry in site.tree.entries if entry.reference.role == "Composition"]
+    for composition in waiting:
+        inner = None if composition is None else composition.tree
+        if composition is None or not isinstance(inner, tree.Composition):
+            continue
+        place = (composition.uri, composition.placed.offset)
+        if place in seen:
+            continue
+        seen.add(place)
+        for entry in inner.entries:
+            if entry.reference.role == "Composition":
+                waiting.append(composition.follow(entry.reference))
+            elif (element := element_of(composition, entry.reference)) is not None:
+                found.add(element)
+    return frozenset(found)
+
+
 def _composed(site: Site | None) -> tuple[Element, ...] | None:
     composition = None if site is None else site.tree
     if site is None or not isinstance(composition, tree.Composition) or not site.whole(composition):
