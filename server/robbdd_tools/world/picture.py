@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.framing import CORNERS, aim, corners_of
 from robbdd_tools.world.scene import local_name
 
 if TYPE_CHECKING:
@@ -21,14 +22,10 @@ COLORS = ((0.10, 0.55, 0.90), (0.95, 0.55, 0.10), (0.25, 0.70, 0.30), (0.80, 0.2
 OPACITY = 0.20
 THIN = 0.06
 """Opacity of a workspace that contains other workspaces, such as a table's."""
-AIM = (-0.05, 0.0, 0.12)
-"""Point that the camera looks at, m from the centre of the tables' tops."""
 LABEL = 0.012
 """Radius (m) of a label's dot."""
-OVERVIEW = (2.15, 128.0, -36.0)
-"""Distance (m), azimuth and elevation (degrees) of the camera for a whole scene."""
-WIDER = 1.35
-"""Distance of the camera from a hall with mobile robots, as a multiple of its size."""
+OVERVIEW = (128.0, -36.0)
+"""Azimuth and elevation (degrees) of the camera for a whole scene."""
 CLOSE, DOWN = 1.1, -30.0
 """Distance (m) and elevation (degrees) of the camera for one object."""
 AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
@@ -65,6 +62,9 @@ class Camera:
         except Exception as error:  # back ends raise exceptions of their own, import errors included
             raise NoPicture(f"{type(error).__name__}: {error}") from error
         self._view: Any = mujoco.MjvCamera()
+        self._aspect = size[0] / size[1]
+        self._overview: tuple[FloatArray, float] | None = None
+        """Where the camera looks and from how far (m): set by the first picture, so that a recording does not shake."""
 
     def take(self, data: Any, focus: str | None = None) -> NDArray[np.uint8]:
         """Render a state as pixels (height, width, 3): the whole scene, or a close-up of one object."""
@@ -108,15 +108,25 @@ class Camera:
         self._renderer.close()
 
     def _look_around(self, data: Any) -> None:
-        tables = [data.body(name).xpos for name in self._simulation.world.cast.tables]
-        self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
-        self._view.distance, self._view.azimuth, self._view.elevation = OVERVIEW
-        starts = [robot.mobile.start.position for robot in self._simulation.robots.values() if robot.mobile is not None]
-        if starts:
-            # Robots drive between the tables and where they start.
-            low, high = np.min([*tables, *starts], axis=0), np.max([*tables, *starts], axis=0)
-            self._view.lookat[:] = (low + high) / 2
-            self._view.distance = max(OVERVIEW[0], WIDER * float(np.linalg.norm(high - low)))
+        model, (azimuth, elevation) = self._simulation.model, OVERVIEW
+        if self._overview is None:
+            points = np.concatenate([corners_of(model, data), *self._starts(), *self._labelled(data)])
+            self._overview = aim(points, azimuth, elevation, float(model.vis.global_.fovy), self._aspect)
+        self._view.lookat[:], self._view.distance = self._overview
+        self._view.azimuth, self._view.elevation = azimuth, elevation
+
+    def _starts(self) -> Iterator[FloatArray]:
+        """Yield the places from which mobile robots start, m: they may have left them."""
+        for robot in self._simulation.robots.values():
+            if robot.mobile is not None:
+                yield np.array([robot.mobile.start.position])
+
+    def _labelled(self, data: Any) -> Iterator[FloatArray]:
+        """Yield the corners (8, 3) of each workspace, m, one of which has its label."""
+        for _, carrier, region in self._regions():
+            body = data.body(carrier)
+            local = np.array(region.center) + CORNERS * (np.array(region.half) + LABEL)
+            yield body.xpos + local @ body.xmat.reshape(3, 3).T
 
     def _look_at(self, data: Any, name: str) -> None:
         """Choose the first direction with a free view of the object."""
