@@ -20,7 +20,7 @@ from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
 from world.worlds import BALL, BENCH_WS, BIN, BIN_WS, CUBE, EVENTS, OTHER_BIN, OTHER_WS, SCENE, execution, pick_place
 
-AGENTS = ("env:panda", "env:kinova", "env:ur10")
+AGENTS = ("env:panda", "env:kinova", "env:ur5e", "env:ur10")
 SCALES = ("0.8", "0.9", "1.0")
 CARRIERS = {"env:shelf_upper_ws": "env:shelf", "env:shelf_lower_ws": "env:shelf", "env:tray_ws": "env:tray"}
 THINGS = ("env:cube", "env:ball", "env:cylinder", "env:bottle")

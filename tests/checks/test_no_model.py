@@ -113,3 +113,11 @@ def test_what_carries_a_nested_workspace_is_simulated_too() -> None:
     nested = scene.replace("ws comp <bench_comp> ws comp <tray_comp>", "ws comp <bench_comp>")
     assert nested != scene
     assert words(with_scene(nested))["dish"] == "WARNING"
+
+
+def test_an_agent_that_is_a_person_has_the_model_of_one() -> None:
+    case = with_scene(
+        SCENE.replace("agent ur10", "agent operator").replace("parts", "cubes"), MODEL.replace("<parts", "<cubes")
+    )
+    assert reported(case) == []
+    assert "Simulated as *person*" in (describe_path(case.snapshot, SCENE_URI, "arms.operator") or "")

@@ -86,10 +86,13 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
 @pytest.mark.parametrize(
     ("scene", "message"),
     [
-        (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, belt, bench, bin, "),
+        (
+            replace(SCENE, objects=("env:gizmo",)),
+            "no model for object 'env:gizmo': .* one of ball, basket, belt, bench, bin, ",
+        ),
         (
             replace(SCENE, agents=("env:hal",)),
-            "no model for agent 'env:hal': .* one of franka, gen3, kinova, mobile, ",
+            "no model for agent 'env:hal': .* one of franka, gen3, human, kinova, mobile, ",
         ),
         (
             replace(SCENE, agents=tuple(f"t:panda{number}" for number in range(1, 6))),

@@ -79,7 +79,7 @@ class BehaviourExecutors:
     def controller(self, agent: str) -> PickPlace:
         """Return the controller of an agent. Raises ``SceneError`` if the scene has no such agent."""
         if agent not in self._simulation.robots:
-            raise SceneError(f"the scene has no agent '{agent}'")
+            raise self._simulation.world.cast.without_robot(agent)
         if agent not in self._controllers:
             self._controllers[agent] = PickPlace(self._simulation, agent, self._emit, self._note_choice)
         return self._controllers[agent]

@@ -243,8 +243,7 @@ class ShapeKind(StrEnum):
 class Shape:
     """A primitive shape in the frame of its object.
 
-    - ``size``: in m: the half edges of a box, (radius, 0, 0) of a sphere, or (radius, half length, 0) of a cylinder
-      along z.
+    - ``size``, m: half edges of a box, (radius, 0, 0) of a sphere, (radius, half length, 0) of a cylinder along z.
     - ``position``: the centre of the shape.
     - ``surface``: the surface velocity (m/s, along one axis) of a driven belt; ``None`` for other shapes.
     """
@@ -263,7 +262,7 @@ class ObjectModel:
     - ``free``: true if the object can move, for example a bin that can be pushed. Other objects are fixed.
     - ``graspable``: true if the object fits into a gripper. It is placed at random unless the scene places it.
     - ``rest_height``: the height (m) of its origin above the surface below; ``region``: the workspace that it carries.
-    - ``color``: RGBA in [0, 1].
+    - ``color``: RGBA in [0, 1]; ``bystander``: true if an agent may be one, too, which executes nothing: a person.
     """
 
     name: str
@@ -287,6 +286,7 @@ class ObjectModel:
     """The joint of a moving part of another object, such as a drawer; such a part is not ``free``."""
     moving: ObjectModel | None = None
     """The moving part that this object carries, with its joint."""
+    bystander: bool = False
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries.

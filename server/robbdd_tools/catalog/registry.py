@@ -46,12 +46,31 @@ class Catalog:
     problems: tuple[str, ...] = ()
 
     def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
-        """Return the object model for a scene object by its name, else by the names of its ``sets``."""
-        return _by_names(self.objects, local_name, sets)
+        """Return the object model for a scene object by its name, else by the names of its ``sets``.
+
+        A person is the last choice: the table of an operator is a table.
+        """
+        names = (local_name, tuple(sets))
+        things = {name: model for name, model in self.objects.items() if not model.bystander}
+        return _by_names(things, *names) or _by_names(self.bystanders, *names)
 
     def robot_for(self, local_name: str, sets: Iterable[str] = ()) -> RobotModel | None:
         """Return the robot model for a scene agent by its name, else by the names of its ``sets``."""
         return _by_names(self.robots, local_name, sets)
+
+    def bystander_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
+        """Return the object model for an agent that executes nothing, such as a person; by the same names."""
+        return _by_names(self.bystanders, local_name, sets)
+
+    @property
+    def agents(self) -> tuple[RobotModel | ObjectModel, ...]:
+        """All models that an agent may have."""
+        return (*self.robots.values(), *self.bystanders.values())
+
+    @property
+    def bystanders(self) -> Mapping[str, ObjectModel]:
+        """The object models that an agent may have, too."""
+        return {name: model for name, model in self.objects.items() if model.bystander}
 
 
 @cache

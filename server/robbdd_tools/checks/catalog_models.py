@@ -59,7 +59,10 @@ def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:
         if member.kind not in ("object", "agent"):
             continue
         sets = member.name.split(".")[:-1]
-        model = catalog.object_for(name, sets) if member.kind == "object" else catalog.robot_for(name, sets)
+        if member.kind == "object":
+            model = catalog.object_for(name, sets)
+        else:
+            model = catalog.robot_for(name, sets) or catalog.bystander_for(name, sets)
         if model is not None:
             found.setdefault(model.name, []).append(name)
     return found

@@ -64,9 +64,10 @@ class GraphSite:
         """Return the catalog's model for the name of an object."""
         return load_catalog().object_for(self.local_name(element), self.sets.get(element, ()))
 
-    def robot_model(self, element: Iri) -> RobotModel | None:
-        """Return the catalog's model for the name of an agent."""
-        return load_catalog().robot_for(self.local_name(element), self.sets.get(element, ()))
+    def robot_model(self, element: Iri) -> RobotModel | ObjectModel | None:
+        """Return the catalog's model for the name of an agent; a person has an object's."""
+        catalog, names = load_catalog(), (self.local_name(element), self.sets.get(element, ()))
+        return catalog.robot_for(*names) or catalog.bystander_for(*names)
 
     def location(self, node: str) -> Location:
         """Return the position of a node; the beginning of the file if it is unknown."""

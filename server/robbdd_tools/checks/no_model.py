@@ -97,7 +97,8 @@ def _fits(element: Element) -> bool:
         case "object":
             return load_catalog().object_for(name, sets) is not None
         case "agent":
-            return load_catalog().robot_for(name, sets) is not None
+            catalog = load_catalog()
+            return (catalog.robot_for(name, sets) or catalog.bystander_for(name, sets)) is not None
         case _:
             return True
 
@@ -180,7 +181,7 @@ def without_model(own: list[str], others: list[str], kinds: Set[str], *, is_used
 def _words(kinds: Set[str]) -> str:
     catalog = load_catalog()
     models = [*(catalog.objects.values() if "object" in kinds else ())]
-    robots = [*(catalog.robots.values() if "agent" in kinds else ())]
+    robots = [*(catalog.agents if "agent" in kinds else ())]
     return ", ".join(sorted({word for model in (*models, *robots) for word in model.prefixes}))
 
 

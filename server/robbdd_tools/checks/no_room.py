@@ -58,10 +58,12 @@ def _containers(scene: Site) -> Iterator[Diagnostic]:
 
 def crowded(models: Mapping[str, ObjectModel]) -> Iterator[NoRoom]:
     """Yield the first table, and the first container on the table, for which there is no room."""
-    tables = [name for name, model in models.items() if not model.free]
+    tables = [name for name, model in models.items() if not model.free and not model.bystander]
+    bystanders = [name for name, model in models.items() if model.bystander]
     standing = [name for name, model in models.items() if model.free and not model.graspable]
     # With several tables, compositions assign objects to them; only a run checks the room.
-    groups = [(tables, "the room"), *([(standing, tables[0] if tables else "the table")] if len(tables) < 2 else [])]
+    on_table = [(standing, tables[0] if tables else "the table")] if len(tables) < 2 else []
+    groups = [(tables, "the room"), (bystanders, "the room"), *on_table]
     for names, where in groups:
         try:
             list(at_places(models, names, where))
@@ -121,4 +123,10 @@ def _quantified(scenario: Scenario) -> Iterator[Names]:
 
 
 def _names(elements: Iterator[Element] | tuple[Element, ...]) -> Names:
-    return frozenset(element.name for element in elements if element.kind == "agent")
+    return frozenset(element.name for element in elements if element.kind == "agent" and not _is_bystander(element))
+
+
+def _is_bystander(element: Element) -> bool:
+    *sets, name = element.name.split(".")
+    catalog = load_catalog()
+    return catalog.robot_for(name, sets) is None and catalog.bystander_for(name, sets) is not None

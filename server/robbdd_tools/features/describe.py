@@ -212,7 +212,8 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             model = load_catalog().object_for(definition.symbol.name, _sets(definition))
             yield from [f"Simulated as *{model.name}*: {model.doc}"] if model is not None else []
         case SymbolKind.AGENT:
-            robot = load_catalog().robot_for(definition.symbol.name, _sets(definition))
+            catalog, names = load_catalog(), (definition.symbol.name, _sets(definition))
+            robot = catalog.robot_for(*names) or catalog.bystander_for(*names)
             yield from [f"Simulated as *{robot.name}*: {robot.doc}"] if robot is not None else []
         case _:
             pass

@@ -34,7 +34,7 @@ def model_choices(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic
 def _choices(gap: Gap, kind: str) -> Iterator[Fix]:
     catalog = load_catalog()
     names = ", ".join(element.name.rpartition(".")[2] for element in gap.elements if element.kind == kind)
-    for model in catalog.objects if kind == "object" else catalog.robots:
+    for model in catalog.objects if kind == "object" else [*catalog.robots, *catalog.bystanders]:
         entries = tuple(_entries(gap, kind, model))
         instance = next(scene_instances(gap.scene), None)
         if instance is None:

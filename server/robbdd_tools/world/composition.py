@@ -13,7 +13,6 @@ import numpy as np
 
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
-from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
@@ -21,7 +20,7 @@ from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, pa
 from robbdd_tools.world.mobile_base import base_of, drive_by_servos
 from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
-from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
+from robbdd_tools.world.placement import FLOOR, TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
@@ -31,8 +30,6 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.protocol.specs import SceneSpec
 
-FLOOR = TABLE_TOP - HEIGHT
-"""Height of the floor, m, world frame."""
 THINGS = 1
 """Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
 COLUMN = "robbdd-column"
@@ -71,7 +68,7 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
     cast = cast_scene(scene, staging)
     bases = mounts(cast)
     if actor is not None and actor not in bases:
-        raise SceneError(f"the scene has no agent '{actor}'")
+        raise cast.without_robot(actor)
     base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
     seed = seed if cast.seed is None else cast.seed
     name = actor if actor is not None else next(iter(bases), None)

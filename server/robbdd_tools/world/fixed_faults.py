@@ -85,12 +85,13 @@ def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | N
     If ``other`` is the same instance with another seed, an element with a sampled pose is left out.
     """
     name = one.element
-    if one.is_agent:
+    if one.is_agent and staging.bystander(name) is None:
         robot, base = staging.robot(name), staging.base(name)
         if robot is not None and base is not None and (other is None or base == other.base(name)):
             placed.agents[name], placed.poses[name] = robot, base
         return
-    model, pose = staging.object_model(name, carries=False), staging.pose(name)
+    model = staging.bystander(name) or staging.object_model(name, carries=False)
+    pose = staging.pose(name)
     for _ in staging.openings():
         pass  # Raises the faults of openings.
     if model is not None and pose is not None and (other is None or pose == other.pose(name)):

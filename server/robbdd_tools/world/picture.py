@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.world.camera_aim import CORNERS, aim, corners_of
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.framing import CORNERS, aim, corners_of
 from robbdd_tools.world.scene import local_name
 
 if TYPE_CHECKING:

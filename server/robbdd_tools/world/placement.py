@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import can_move
+from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.dropping import Ball, drop
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 TABLE_TOP = 0.10
 """Height of table tops above the world's origin, m. The paper does not define it, as the world frame is its own."""
+FLOOR = TABLE_TOP - HEIGHT
+"""Height of the floor, m, world frame."""
 BEARING = 2.6
 """Largest angle to either side of straight ahead that an arm has to turn to, rad."""
 FINGER_GAP = 0.04
@@ -135,6 +138,9 @@ def arrange(
     poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}
     for name, (x, y, _) in _at_places(cast, tuple(name for name in cast.tables if name not in placed), "the room"):
         poses[name] = Pose((x, y, TABLE_TOP - surface(cast.objects[name])))
+    bystanders = tuple(name for name, model in cast.objects.items() if model.bystander and name not in placed)
+    for name, (x, y, _) in _at_places(cast, bystanders, "the room"):
+        poses[name] = Pose((x, y, FLOOR + cast.objects[name].rest_height))
     for table, names in _stands_on(scene, cast).items():
         left, ahead, z = poses[table].position
         top = z + surface(cast.objects[table])

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robbdd_tools.base.articulation import Opening
-    from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
+    from robbdd_tools.catalog.api import ObjectModel, Region
     from robbdd_tools.catalog.executable import Origin
     from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.protocol.specs import SceneSpec
@@ -77,10 +78,16 @@ class Cast:
         """Return the source position of the element that makes the simulation fail, or ``None``."""
         return self.origin(error.element) if error.element else None
 
+    def without_robot(self, name: str) -> SceneError:
+        """Return the reason why an agent that is no robot of the scene cannot execute a behaviour."""
+        if name in self.objects:
+            return SceneError(f"'{name}' is a bystander: it executes no behaviour")
+        return SceneError(f"the scene has no agent '{name}'")
+
     @property
     def tables(self) -> tuple[str, ...]:
         """The fixed objects, which carry everything else. The one with the largest top is first."""
-        fixed = [name for name, model in self.objects.items() if not can_move(model)]
+        fixed = [name for name, model in self.objects.items() if not can_move(model) and not model.bystander]
         return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
 
 
@@ -115,15 +122,17 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
-        robot = None if staging is None else staging.robot(name)
-        robot = robot or catalog.robot_for(local_name(name), scene.sets.get(name, ()))
+        model = _agent_model(scene, staging, name)
         # Bystanders stand where an executable scene places them, and nowhere otherwise.
-        if name in scene.unused and (robot is None or staging is None or staging.base(name) is None):
+        if name in scene.unused and (model is None or staging is None or staging.base(name) is None):
             left_out.append(name)
             continue
-        if robot is None:
-            raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
-        agents[name] = robot
+        if model is None:
+            raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.agents)))
+        if isinstance(model, RobotModel):
+            agents[name] = model
+        else:
+            objects[name] = model
     objects = {name: objects[name] for name in sorted(objects)}
     openings: dict[str, Opening | str] = {}
     if staging is not None:
@@ -132,7 +141,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         openings = dict(staging.openings())
     _add_moving(objects, openings)
     objects |= {name: carrying(objects[name]) for name in _bare_carriers(scene, objects)}
-    if all(can_move(model) for model in objects.values()):
+    if all(can_move(model) or model.bystander for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
     heights = {name: height_of(model) for name, model in objects.items()}
     found = Configured(objects, agents, openings)
@@ -153,6 +162,13 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         heights,
         openings,
     )
+
+
+def _agent_model(scene: SceneSpec, staging: Staging | None, name: str) -> RobotModel | ObjectModel | None:
+    """Return the model of an agent: a robot's, or an object's if the agent is a bystander. Raises ``SceneError``."""
+    stated = None if staging is None else staging.bystander(name) or staging.robot(name)
+    catalog, names = load_catalog(), (local_name(name), scene.sets.get(name, ()))
+    return stated or catalog.robot_for(*names) or catalog.bystander_for(*names)
 
 
 def _add_moving(objects: dict[str, ObjectModel], openings: dict[str, Opening | str]) -> None:

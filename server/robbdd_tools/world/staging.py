@@ -171,6 +171,11 @@ class Staging:
         parent = element if carrier is None else self._part_name(element, carrier)
         return replace(part.model, joint=replace(joint, parent=parent))
 
+    def bystander(self, element: str) -> ObjectModel | None:
+        """Return the model of an agent that executes nothing, ``None`` for any other one."""
+        chosen = self._source(element)
+        return load_catalog().bystanders.get(chosen.name) if chosen is not None and chosen.kind == "catalog" else None
+
     def robot(self, element: str) -> RobotModel | None:
         """Return the model of an agent, ``None`` if not defined; raises ``SceneError``."""
         chosen = self._source(element)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robbdd_tools.world.camera_aim import aim, corners_of
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.framing import aim, corners_of
 from world.worlds import execution
 
 if TYPE_CHECKING:
