@@ -20,6 +20,7 @@ from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.features.study_words import study_word_meaning
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project
+from robbdd_tools.syntax.constructs import constructs_with
 from robbdd_tools.syntax.study_content import STUDY
 
 if TYPE_CHECKING:
@@ -62,6 +63,9 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
 def _keyword(language: str, words: str) -> str | None:
     if language == STUDY:
         return study_word_meaning(words)
+    described = constructs_with(language, words.split()[0])
+    if describe_words(words) is None and len(described) == 1:
+        return described[0].markdown
     form = keyword_form(language, words)
     parts = (describe_words(words), None if form is None else code_block(form, language))
     return "\n\n".join(part for part in parts if part is not None) or None

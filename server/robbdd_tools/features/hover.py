@@ -1,9 +1,8 @@
-"""Hover: describe a name, a phrase of the catalog, a time constraint or an import."""
+"""Hover: describe a name, a phrase of the catalog, a keyword, a time constraint or an import."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
@@ -18,13 +17,18 @@ from robbdd_tools.features.result_words import result_words
 from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.features.studies import is_study
-from robbdd_tools.features.study_words import study_word_meaning
+from robbdd_tools.features.study_words import study_keyword_meaning
+from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.constructs import construct_of, constructs_with
 from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.keyword_at import keyword_in_part
 from robbdd_tools.syntax.study_tokens import study_tokens
 from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robbdd_tools.features.run_verdicts import Findings, Judged
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
@@ -44,7 +48,7 @@ class Hover:
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
-    """Describe the name or import at an offset. Without one, describe the enclosing phrase or time constraint.
+    """Describe the name or import at an offset. Without one, describe the enclosing phrase, or the keyword.
 
     ``findings`` are the latest results of clauses. Everywhere inside a clause, the hover shows the clause's results.
     """
@@ -61,11 +65,18 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
             return replace(words, judged=hint.worst)
     else:
         words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset) or _elsewhere(snapshot, uri, offset)
-    if hint is None:
-        return words
-    if words is None:
-        return Hover(result_words(hint), hint.span, hint.worst)
-    return Hover(f"{words.markdown}\n\n{result_words(hint)}", words.span, hint.worst)
+    keyword = None if found is not None else _keyword(snapshot, uri, offset)
+    results = None if hint is None else Hover(result_words(hint), hint.span, hint.worst)
+    return _joined([one for one in (words, results, keyword) if one is not None])
+
+
+def _joined(parts: Sequence[Hover]) -> Hover | None:
+    """Join what is known about a place. The general meaning of a keyword is last: a reader knows it after a while."""
+    if not parts:
+        return None
+    smallest = min((one.span for one in parts), key=lambda span: span.end - span.start)
+    judged = next((one.judged for one in parts if one.judged is not None), None)
+    return Hover("\n\n".join(one.markdown for one in parts), smallest, judged)
 
 
 def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
@@ -92,13 +103,29 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
     return None
 
 
+def _keyword(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+    """Describe the construct of a keyword."""
+    analysis = snapshot.file(uri)
+    if analysis is None or is_study(uri):
+        return None
+    for placed in analysis.parts(Span(offset, offset + 1)):
+        found = keyword_in_part(language_of(uri), placed.declaration, offset - placed.offset)
+        if found is None:
+            continue
+        construct = construct_of(language_of(uri), found.rule, found.word)
+        possible = [construct] if found.rule else constructs_with(language_of(uri), found.word)
+        if len(possible) == 1 and possible[0] is not None:
+            return Hover(possible[0].markdown, found.span.shifted(placed.offset))
+    return None
+
+
 def _study_word(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
-    """Describe the beginning of a setting, or a catalog behaviour that is a level."""
+    """Describe a keyword of a study, or a catalog behaviour that is a level."""
     tokens = list(study_tokens(snapshot.document(uri).text))
-    for token, following in pairwise(tokens):
+    for number, token in enumerate(tokens):
         if token.kind == "name" and token.span.contains(offset):
-            is_level = following.text in (",", "}")
-            found = describe_catalog_entry(token.text) if is_level else study_word_meaning(token.text)
+            is_level = tokens[number + 1].text in (",", "}")
+            found = study_keyword_meaning(tokens, number) or (describe_catalog_entry(token.text) if is_level else None)
             return None if found is None else Hover(found, token.span)
     return None
 

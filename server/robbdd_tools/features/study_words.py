@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from robbdd_tools.features.snippets import Snippet
+from robbdd_tools.syntax.study_tokens import Token
 
 FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -57,3 +59,21 @@ def study_word_meaning(word: str) -> str | None:
         return None
     form, meaning = FORMS[word]
     return f"```study\n{form}\n```\n\n{meaning}"
+
+
+def study_keyword_meaning(tokens: Sequence[Token], number: int) -> str | None:
+    """Describe one of the tokens of a study: by its setting, if it is a word within one; ``None`` for names and values.
+
+    The tokens end with that of the end of the file.
+    """
+    word, before = tokens[number].text, tokens[:number]
+    is_value = tokens[number + 1].text in (",", "}") or (bool(before) and before[-1].text == "Study")
+    if word in FORMS and not is_value:
+        return study_word_meaning(word)
+    for token in reversed(before):
+        if token.text == "{":
+            return None
+        if token.kind == "name" and token.text in FORMS:
+            inner = re.findall(r"(?<![\w<\-])[a-z][a-z\-]*", FORMS[token.text][0])
+            return study_word_meaning(token.text) if word in inner else None
+    return None
