@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from lexer import RobbddLexer
+from lexer import GraphLexer, RobbddLexer
 from sphinx.application import Sphinx
 
 from robbdd_tools import __version__
@@ -29,5 +29,6 @@ man_pages: list[tuple[str, str, str, list[str], int]] = [
 
 
 def setup(app: Sphinx) -> None:
-    """Add the colours of the language."""
+    """Add the colours of the language and of graphs."""
     app.add_lexer("robbdd", RobbddLexer)
+    app.add_lexer("turtle", GraphLexer)

@@ -1,9 +1,10 @@
-"""Colours of RobBDD text on the site. The keywords are those of the grammars."""
+"""Colours of RobBDD text and of graphs on the site. The keywords are those of the grammars."""
 
 from collections.abc import Sequence
 from typing import ClassVar
 
-from pygments.lexer import RegexLexer, words
+from pygments.lexer import RegexLexer, inherit, words
+from pygments.lexers.rdf import TurtleLexer  # pyright: ignore[reportMissingTypeStubs] -- its stubs lack this file
 from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text
 
 from robbdd_tools.features.semantic_tokens import words_of_grammar
@@ -29,3 +30,9 @@ class RobbddLexer(RegexLexer):
             (r"\s+", Text),
         ]
     }
+
+
+class GraphLexer(TurtleLexer):
+    """Turtle with numbers such as ``2e-01``, which the lexer of Pygments does not know."""
+
+    tokens: ClassVar[dict[str, list[object]]] = {"root": [(r"[+-]?\d+(?:\.\d+)?[eE][+-]?\d+", Number.Float), inherit]}

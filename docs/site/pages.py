@@ -45,8 +45,10 @@ SECTIONS = {
     ),
     "Examples": (),
     "Reference": (
+        "language/README",
+        *(f"language/{page}" for page in ("criteria", "scenes", "executable-scenes", "executions", "all-files")),
+        *("language/words", "language/studies", "language/grammar"),
         "command-line",
-        "language/grammar",
         "semantics",
         "diagnostics/README",
         "python-reference",

@@ -47,7 +47,7 @@ def keyword_in_part(language: str, part: Declaration, offset: int) -> Keyword | 
 
 def keyword_at(language: str, text: str, offset: int) -> Keyword | None:
     """Return the keyword of a chunk at an offset, ``None`` if there is none."""
-    for match in _tokens(grammar_name(language)).finditer(text):
+    for match in keyword_tokens(language).finditer(text):
         if match.end() > offset:
             break
     else:
@@ -66,9 +66,11 @@ def keyword_at(language: str, text: str, offset: int) -> Keyword | None:
 
 
 @cache
-def _tokens(name: str) -> re.Pattern[str]:
+def keyword_tokens(language: str) -> re.Pattern[str]:
     """Return an expression of tokens, of which only keywords are in the group ``word``."""
-    every = {text for rule in read_rules(name).values() for text in literals(rule) if text[0].isalpha()}
+    every = {
+        text for rule in read_rules(grammar_name(language)).values() for text in literals(rule) if text[0].isalpha()
+    }
     words = "|".join(re.escape(word) for word in sorted(every, key=lambda word: (-len(word), word)))
     return re.compile(
         r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|<[^<>\n]*>"
@@ -90,11 +92,12 @@ def _around(root: RawNode, offset: int) -> list[RawNode]:
     node: RawNode | None = root
     while node is not None:
         found.append(node)
-        node = next((child for child in _children(node) if _contains(child, offset)), None)
+        node = next((child for child in children(node) if _contains(child, offset)), None)
     return found
 
 
-def _children(node: RawNode) -> Iterator[RawNode]:
+def children(node: RawNode) -> Iterator[RawNode]:
+    """Yield the objects that are parts of an object."""
     for name, value in cast("dict[str, Any]", vars(node)).items():
         if name.startswith("_") or name == "parent":  # textX's own attributes
             continue
