@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from judging.judged_policies import spec_of
-from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of, stated_frames
+from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of, stated_frames, tool_frame_of
 from robbdd_tools.logs.log_contents import TextStamp
 from robbdd_tools.monitor.policy import Observation, Policy
 from world.worlds import CUBE
@@ -78,3 +78,15 @@ def test_the_observations_of_policies_state_frames_of_variables_and_elements() -
     spec = replace(spec, execution=replace(spec.execution, policies=(observing,)))
     assert stated_frames(spec) == {CUBE: "cube_frame", "env:bin": "bin_frame"}
     assert stated_frames(replace(spec, execution=None)) == {}
+
+
+@pytest.mark.parametrize("base", ["panda/base_link", "panda/odom", "panda/panda_link0", "panda/base"])
+def test_a_base_is_no_tool_unless_it_is_stated(base: str) -> None:
+    with pytest.raises(FramesProblem) as caught:
+        tool_frame_of("env:panda", ["map", base], {})
+    words = f"'{base}' is the base of env:panda, and no frame has the name of its tool"
+    assert str(caught.value) == f"{words}; name the frame of the tool with --frame panda=FRAME"
+    assert tool_frame_of("env:panda", ["map", base], {"panda": base}) == base
+    assert tool_frame_of("env:panda", ["map", base], {"env:panda": base}) == base
+    assert tool_frame_of("env:panda", ["map", base, "panda"], {}) == "panda"
+    assert tool_frame_of("env:panda", ["map", "panda/tool0"], {}) == "panda/tool0"

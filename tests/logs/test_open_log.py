@@ -157,19 +157,6 @@ def refused(path: Path) -> str:
     return str(caught.value)
 
 
-def test_two_parents_of_a_frame_are_refused(tmp_path: Path) -> None:
-    messages = [transform("cup", (0, 0, 0), stamp=1.0), transform("cup", (0, 0, 0), stamp=2.0, parent="camera")]
-    words = "frame 'cup' has two parents, 'map' and 'camera': publish one of them only"
-    assert words in refused(write(tmp_path / "drive", messages))
-
-
-def test_a_static_frame_that_moves_is_refused(tmp_path: Path) -> None:
-    same = [transform("bench", (0, 0, 0), stamp=time, topic="/tf_static") for time in (1.0, 2.0)]
-    assert read_log(write(tmp_path / "same", same)).tracks["bench"].static
-    moved = [*same, transform("bench", (0, 0, 0.1), stamp=3.0, topic="/tf_static")]
-    assert "frame 'bench' has several static poses" in refused(write(tmp_path / "moved", moved))
-
-
 @pytest.mark.parametrize("kind", ["sqlite", "mcap", "ros1"])
 @pytest.mark.parametrize("damage", ["empty", "half", "noise"])
 def test_a_damaged_bag_is_refused(kind: str, damage: str, tmp_path: Path) -> None:

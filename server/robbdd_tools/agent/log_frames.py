@@ -16,6 +16,7 @@ from robbdd_tools.judging.log_names import (
     frame_of,
     local_name,
     stated_frames,
+    tool_frame_of,
 )
 from robbdd_tools.logs.log_contents import Track
 from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of, rotated
@@ -64,7 +65,8 @@ class Frames:
         problems: dict[str, str] = {}
         for element in (*cast.objects, *cast.agents):
             try:
-                self.of[element] = frame_of(element, contents.tracks, stated)
+                found = tool_frame_of if element in cast.agents else frame_of
+                self.of[element] = found(element, contents.tracks, stated)
             except FramesProblem as problem:
                 problems[element] = str(problem)
         asked = {agent for agent in jointed if agent not in self.of}

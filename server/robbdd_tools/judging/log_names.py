@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 V = TypeVar("V")
 GROUPS = (OTHERS, "angle", "speed")
 """Entries of ``Trace.uncertain`` that are not elements."""
+BASES = frozenset({"base", "baselink", "basefootprint", "odom", "map", "world", "root"})
+"""Usual names of frames that are never a tool, without separators."""
+FIRST_LINK = "link0"
 _SEPARATORS = re.compile(r"[\s_.-]+")
 
 
@@ -85,6 +88,19 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
     if found:
         raise FramesProblem(f"several frames fit {element}: {', '.join(found)}; choose with --frame {name}=FRAME")
     raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; name it with --frame {name}=FRAME")
+
+
+def tool_frame_of(agent: str, frames: Iterable[str], stated: Mapping[str, str]) -> str:
+    """Return the frame of an agent's tool (CURIE) as ``frame_of`` does, but never a base that is only found by name.
+
+    Raises ``FramesProblem``.
+    """
+    name, frame = local_name(agent), frame_of(agent, frames, stated)
+    last = plain_word(frame.rpartition("/")[2])
+    if not {agent, name}.isdisjoint(stated) or not (last in BASES or last.endswith(FIRST_LINK)):
+        return frame
+    words = f"'{frame}' is the base of {agent}, and no frame has the name of its tool"
+    raise FramesProblem(f"{words}; name the frame of the tool with --frame {name}=FRAME")
 
 
 def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], stated: str) -> str:

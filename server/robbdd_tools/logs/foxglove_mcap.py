@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 from mcap.reader import make_reader
 
 from robbdd_tools.base.files import open_regular
-from robbdd_tools.logs.joint_tracks import JointBuilder
-from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
+from robbdd_tools.logs.log_collector import LogCollector
+from robbdd_tools.logs.log_contents import UnreadableLog
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from robbdd_tools.logs.log_contents import LogContents
 
 TRANSFORMS, TRANSFORM, POSE = "foxglove.FrameTransforms", "foxglove.FrameTransform", "foxglove.PoseInFrame"
 LOG = "foxglove.Log"
@@ -40,41 +42,36 @@ def encodings(path: Path) -> set[str]:
 
 def read_foxglove(path: Path) -> LogContents:
     """Return the contents of an MCAP file with JSON messages: transforms, poses and texts. Raises ``UnreadableLog``."""
-    builder, joints, texts = TrackBuilder(), JointBuilder(), list[tuple[int, str, str]]()
+    found = LogCollector()
     try:
-        for topic, kind, time, message in _messages(path):
-            match kind:
-                case "foxglove.FrameTransforms":
-                    for one in message["transforms"]:
-                        _add_transform(builder, one)
-                case "foxglove.FrameTransform":
-                    _add_transform(builder, message)
-                case "foxglove.PoseInFrame":
-                    pose = message["pose"]
-                    place, turn = _vector(pose["position"]), _turn(pose["orientation"])
-                    builder.add(topic.lstrip("/"), message["frame_id"], _stamp(message["timestamp"]), place, turn)
-                case "foxglove.Log":
-                    texts.append((time, topic, str(message["message"])))
-                case "foxglove.JointStates":
-                    known = [one for one in message["joints"] if one.get("position") is not None]
-                    _add_joints(joints, topic, _stamp(message["timestamp"]), known)
-                case _:
-                    positions, efforts = message["position"], message.get("effort") or ()
-                    joints.add(topic, _header_stamp(message) or time, message["name"], positions, efforts)
+        for topic, kind, received, message in _messages(path):
+            _take(found, topic, kind, received, message)
     except UnreadableLog as error:
         raise UnreadableLog(f"{path}: {error}") from None
     except Exception as error:  # On damaged bytes the decoder raises exceptions of several types.
         raise UnreadableLog(f"{path} cannot be read as MCAP: {error or type(error).__name__}") from error
-    return contents_of(builder, texts, joints)
+    return found.finish()
 
 
-def contents_of(builder: TrackBuilder, texts: list[tuple[int, str, str]], joints: JointBuilder) -> LogContents:
-    """Return the contents of a log with a single clock. ``texts`` are times (ns), topics and texts."""
-    stamps = [*builder.bounds(), *joints.bounds(), *(time for time, _, _ in texts)]
-    begin, end = min(stamps, default=0), max(stamps, default=0)
-    found = tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in sorted(texts))
-    tracks, remarks = builder.tracks(begin), tuple(joints.remarks)
-    return LogContents(tracks, found, (end - begin) / 1e9, remarks, joints=joints.tracks(begin))
+def _take(found: LogCollector, topic: str, kind: str, received: int, message: Any) -> None:
+    match kind:
+        case "foxglove.FrameTransforms":
+            for one in message["transforms"]:
+                _add_transform(found, topic, received, one)
+        case "foxglove.FrameTransform":
+            _add_transform(found, topic, received, message)
+        case "foxglove.PoseInFrame":
+            pose, time = message["pose"], (_stamp(message["timestamp"]), received)
+            place, turn = _vector(pose["position"]), _turn(pose["orientation"])
+            found.pose(topic, topic, message["frame_id"], time, (place, turn))
+        case "foxglove.Log":
+            found.text(topic, received, str(message["message"]))
+        case "foxglove.JointStates":
+            known = [one for one in message["joints"] if one.get("position") is not None]
+            _add_joints(found, topic, (_stamp(message["timestamp"]), received), known)
+        case _:
+            positions, efforts = message["position"], message.get("effort") or ()
+            found.joints(topic, (_header_stamp(message), received), message["name"], positions, efforts)
 
 
 def _messages(path: Path) -> Iterator[tuple[str, str, int, Any]]:
@@ -87,14 +84,14 @@ def _messages(path: Path) -> Iterator[tuple[str, str, int, Any]]:
 READ = {TRANSFORMS, TRANSFORM, POSE, LOG, JOINTS, *ROS_JOINTS}
 
 
-def _add_transform(builder: TrackBuilder, one: Any) -> None:
-    place, turn = _vector(one["translation"]), _turn(one["rotation"])
-    builder.add(one["child_frame_id"], one["parent_frame_id"], _stamp(one["timestamp"]), place, turn)
+def _add_transform(found: LogCollector, topic: str, received: int, one: Any) -> None:
+    pose, time = (_vector(one["translation"]), _turn(one["rotation"])), (_stamp(one["timestamp"]), received)
+    found.transform(topic, one["child_frame_id"], one["parent_frame_id"], time, pose)
 
 
-def _add_joints(joints: JointBuilder, topic: str, time: int, states: list[Any]) -> None:
+def _add_joints(found: LogCollector, topic: str, time: tuple[int, int], states: list[Any]) -> None:
     names, positions = [str(one["name"]) for one in states], [float(one["position"]) for one in states]
-    joints.add(topic, time, names, positions, [float(one.get("effort", math.nan)) for one in states])
+    found.joints(topic, time, names, positions, [float(one.get("effort", math.nan)) for one in states])
 
 
 def _header_stamp(message: Any) -> int:

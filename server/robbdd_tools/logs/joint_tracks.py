@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -59,6 +59,25 @@ class JointBuilder:
                 states = joints[name] = _States()
             states.times.append(time)
             states.values.extend((float(position), float(effort)))
+
+    def absorb(self, other: JointBuilder) -> None:
+        """Add the states of another builder."""
+        self.remarks |= other.remarks
+        for topic, joints in other._topics.items():
+            for name, states in joints.items():
+                own = self._topics.setdefault(topic, {}).setdefault(name, _States())
+                own.times.extend(states.times)
+                own.values.extend(states.values)
+
+    def drop(self, topic: str) -> None:
+        """Forget the states on a topic."""
+        self._topics.pop(topic, None)
+
+    def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
+        """Replace the times (ns) of all states."""
+        for joints in self._topics.values():
+            for states in joints.values():
+                states.times = convert(states.times)
 
     def bounds(self) -> list[int]:
         """Return the times of the earliest and the latest state, ns; empty if there is none."""

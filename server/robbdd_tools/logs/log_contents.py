@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -89,6 +89,8 @@ class TrackBuilder:
     """Collects the poses of frames in any order of time. Times are in ns of the log's clock."""
 
     _frames: dict[str, _Poses] = field(default_factory=dict[str, "_Poses"])
+    _lost: dict[str, str] = field(default_factory=dict[str, str])
+    """Frames whose poses cannot be used → the reason, if no other sentence names it."""
 
     def add(
         self,
@@ -100,36 +102,71 @@ class TrackBuilder:
         *,
         static: bool = False,
     ) -> None:
-        """Add a pose: position in m, orientation as (w, x, y, z).
-
-        Raises ``UnreadableLog`` if the frame had another parent before.
-        """
+        """Add a pose: position in m, orientation as (w, x, y, z)."""
         poses = self._frames.get(frame)
         if poses is None:
             poses = self._frames[frame] = _Poses(parent)
         if poses.parent != parent:
-            words = f"frame '{frame}' has two parents, '{poses.parent}' and '{parent}'"
-            raise UnreadableLog(f"{words}: publish one of them only")
+            self._lost[frame] = _two_parents(frame, poses.parent, parent)
+            return
         poses.static = poses.static and static
         poses.times.append(time)
         poses.values.extend((*position, *orientation))
 
+    def absorb(self, other: TrackBuilder) -> None:
+        """Add the poses of another builder. A frame with another parent there has two parents."""
+        self._lost |= {frame: words for frame, words in other._lost.items() if frame not in self._lost}
+        for frame, poses in other._frames.items():
+            own = self._frames.setdefault(frame, _Poses(poses.parent, static=poses.static))
+            if own.parent != poses.parent:
+                self._lost[frame] = _two_parents(frame, own.parent, poses.parent)
+                continue
+            own.static = own.static and poses.static
+            own.times.extend(poses.times)
+            own.values.extend(poses.values)
+
+    def drop(self, frame: str) -> None:
+        """Forget the poses of a frame. It stays a frame, whose place is not known."""
+        if frame in self._frames:
+            self._lost.setdefault(frame, "")
+
+    def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
+        """Replace the times (ns) of all poses."""
+        for poses in self._frames.values():
+            poses.times = convert(poses.times)
+
     def bounds(self) -> list[int]:
         """Return the times of the earliest and the latest pose that is not static, ns; empty if there is none."""
-        times = [time for one in self._frames.values() if not one.static for time in (min(one.times), max(one.times))]
+        moving = [one for frame, one in self._frames.items() if not one.static and frame not in self._lost]
+        times = [time for one in moving for time in (min(one.times), max(one.times))]
         return [min(times), max(times)] if times else []
 
-    def tracks(self, begin: int) -> dict[str, Track]:
+    def tracks(self, begin: int, remarks: list[str]) -> dict[str, Track]:
         """Return the tracks, with times in s since ``begin`` (ns).
 
         Of several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion has no
-        length, are left out. Raises ``UnreadableLog`` if a frame that never moves has different poses.
+        length, are left out. The place of a frame with several parents, or with different static poses, is not known:
+        ``remarks`` gets a sentence on each.
         """
+        found: dict[str, Track] = {}
         for frame, poses in self._frames.items():
-            if poses.static and poses.differ():
-                raise UnreadableLog(f"frame '{frame}' has several static poses: its place is not known")
-        found = {frame: poses.track(begin) for frame, poses in self._frames.items()}
-        return {frame: track for frame, track in found.items() if len(track.times)}
+            if frame not in self._lost and poses.static and poses.differ():
+                self._lost[frame] = f"frame '{frame}' has several static poses: its place is not known"
+            track = _nowhere(poses.parent) if frame in self._lost else poses.track(begin)
+            if len(track.times):
+                found[frame] = track
+        remarks += filter(None, self._lost.values())
+        return found
+
+
+def _two_parents(frame: str, one: str, other: str) -> str:
+    words = f"frame '{frame}' has two parents, '{one}' and '{other}': publish one of them only"
+    return f"{words}; its place is not known"
+
+
+def _nowhere(parent: str) -> Track:
+    """Return the track of a frame whose place is never known. Without it, its children would have no parent."""
+    return Track(parent, np.zeros(1), np.full((1, 3), np.nan), np.full((1, 4), np.nan))
 
 
 @dataclass

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import open_regular
-from robbdd_tools.logs.foxglove_mcap import contents_of
 from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
 from robbdd_tools.logs.table_columns import POSITION, TURN, Columns, columns_of
@@ -80,7 +79,12 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
             joints.add(path.name, time, list(known), list(known.values()))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UnreadableLog(f"{path} cannot be read as a table: {error}") from error
-    return contents_of(builder, texts, joints)
+    stamps = [*builder.bounds(), *joints.bounds(), *(time for time, _, _ in texts)]
+    begin, end = min(stamps, default=0), max(stamps, default=0)
+    found = tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in sorted(texts))
+    remarks: list[str] = []
+    tracks = builder.tracks(begin, remarks)
+    return LogContents(tracks, found, (end - begin) / 1e9, (*remarks, *joints.remarks), joints=joints.tracks(begin))
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:

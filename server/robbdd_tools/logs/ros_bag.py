@@ -30,7 +30,7 @@ def read_ros_bag(path: Path, clocks: Mapping[str, float] | None = None) -> LogCo
         known = known_types()
     except ImportError:
         raise UnreadableLog(NO_ROSBAGS) from None
-    contents = RosContents()
+    contents = RosContents(clocks or {})
     topic = ""
     try:
         # Bags of ROS 2 before Iron do not contain the definitions of their types.

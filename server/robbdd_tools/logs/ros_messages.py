@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
-
-import numpy as np
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.logs.action_goals import ROS1_STATES, ROS2_STATES, ActionGoals, GoalState
 from robbdd_tools.logs.diagnostics import Diagnostics
-from robbdd_tools.logs.joint_tracks import JointBuilder
-from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, Truths
+from robbdd_tools.logs.frame_sources import STATIC
+from robbdd_tools.logs.log_collector import LogCollector
 from robbdd_tools.logs.pose_lists import PoseLists
 
-MIN_OFFSET = 1.0
-"""Seconds between the clocks of headers and of reception from which they count as different clocks."""
-STATIC = "tf_static"
-FORCE = "force"
+if TYPE_CHECKING:
+    from robbdd_tools.logs.log_contents import LogContents
+    from robbdd_tools.logs.pose_lists import Pose
+
+HOW_STAMPED = "messages are stamped by their headers, and those without one by their reception"
 WORLD = "world"
 """Frame of the poses of a simulator."""
 
@@ -25,61 +25,48 @@ WORLD = "world"
 class RosContents:
     """Collects what the messages of a bag say. Times are in ns."""
 
-    def __init__(self) -> None:
-        self.builder = TrackBuilder()
-        self.texts: list[tuple[int, str, str]] = []
-        self.truths: dict[str, list[tuple[int, float]]] = {}
-        self.offsets: list[int] = []
+    def __init__(self, stated: Collection[str] = ()) -> None:
+        """``stated`` are the topics whose clocks the user has stated."""
+        self.found = LogCollector(stated)
         self.lists = PoseLists()
         self.goals = ActionGoals()
-        self._diagnostics = Diagnostics()
         self.remarks: list[str] = []
         self.ahead = 0
         """By how much (ns) the clock of the headers of the next messages is ahead."""
-        self._received = TrackBuilder()
-        """Poses without headers, by the time of reception."""
-        self.joints = JointBuilder()
-        self._received_joints = JointBuilder()
-        self._wrenches = JointBuilder()
+        self._diagnostics = Diagnostics()
 
     def transforms(self, topic: str, received: int, message: Any) -> None:
         """Take the transforms of ``TFMessage``; those of ``/tf_static`` hold at all times."""
-        for one in message.transforms:
-            self._transform(topic, received, one)
-
-    def _transform(self, topic: str, received: int, one: Any) -> None:
         static = topic.rpartition("/")[2] == STATIC
-        stamp = self._stamp(one.header.stamp)
-        if not static:
-            self.offsets.append(received - stamp)
-        where, turn = one.transform.translation, one.transform.rotation
-        place, rotation = (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
-        child, parent = one.child_frame_id.lstrip("/"), one.header.frame_id.lstrip("/")
-        self.builder.add(child, parent, stamp, place, rotation, static=static)
+        for one in message.transforms:
+            where, turn = one.transform.translation, one.transform.rotation
+            pose = (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
+            time = self._stamp(one.header.stamp), received
+            self.found.transform(topic, one.child_frame_id, one.header.frame_id, time, pose, static=static)
 
     def pose(self, topic: str, received: int, message: Any) -> None:
         """Take the pose of the frame that the topic names."""
-        self._stamped(topic, received, message.header, message.pose)
+        self._pose(topic, topic, received, message.header, message.pose)
 
     def estimate(self, topic: str, received: int, message: Any) -> None:
         """Take a pose with its covariance; the covariance is not used."""
-        self._stamped(topic, received, message.header, message.pose.pose)
+        self._pose(topic, topic, received, message.header, message.pose.pose)
 
     def odometry(self, topic: str, received: int, message: Any) -> None:
         """Take the pose of ``child_frame_id``, or of the topic without one."""
-        self._stamped(message.child_frame_id or topic, received, message.header, message.pose.pose)
+        self._pose(topic, message.child_frame_id or topic, received, message.header, message.pose.pose)
 
     def poses(self, topic: str, received: int, message: Any) -> None:
         """Take a list of poses without names: ``topic/0``, ``topic/1`` …"""
         frames = self.lists.unnamed(topic, len(message.poses))
         for frame, one in zip(frames, message.poses, strict=True):
-            self._stamped(frame, received, message.header, one)
+            self._pose(topic, frame, received, message.header, one)
 
     def states(self, topic: str, received: int, message: Any) -> None:
         """Take the models or links of a simulator, by their names."""
         frames = self.lists.named(topic, message.name)
         for frame, one in zip(frames, message.pose, strict=True):
-            _add(self._received, frame, WORLD, received, one)
+            self.found.pose(topic, frame, WORLD, (0, received), _pose(one))
 
     def detection(self, topic: str, received: int, message: Any) -> None:
         """Take one detected thing."""
@@ -97,7 +84,7 @@ class RosContents:
             own = one.header if one.header.frame_id else header
             pose = _detected_pose(one)
             self.lists.seen(topic, frame, self._stamp(own.stamp), (pose.position.x, pose.position.y, pose.position.z))
-            self._stamped(frame, received, own, pose)
+            self._pose(topic, frame, received, own, pose)
 
     def _name(self, topic: str, one: Any) -> str:
         name = _detected(one)
@@ -107,45 +94,41 @@ class RosContents:
 
     def text(self, topic: str, received: int, message: Any) -> None:
         """Take a text, which may report an event."""
-        self.texts.append((received, topic, str(message.data)))
+        self.found.text(topic, received, str(message.data))
 
     def diagnostics(self, topic: str, received: int, message: Any) -> None:
         """Take the changes of components' states as texts on ``topic/NAME``."""
         for one in message.status:
             level = one.level[0] if isinstance(one.level, bytes) else int(one.level)
             for words in self._diagnostics.texts(topic, str(one.name), level, str(one.message)):
-                self.texts.append((received, f"{topic}/{one.name}", words))
+                self.found.text(f"{topic}/{one.name}", received, words)
 
     def truth(self, topic: str, received: int, message: Any) -> None:
         """Take a truth value."""
-        self.truths.setdefault(topic, []).append((received, 1.0 if message.data else -1.0))
+        self.found.truth(topic, received, 1.0 if message.data else -1.0)
 
     def trinary(self, topic: str, received: int, message: Any) -> None:
         """Take a truth value that may be unknown."""
         # The type defines its own values; a stamped one contains it.
         value = getattr(message, "trinary", message)
         known = {int(value.TRUE): 1.0, int(value.FALSE): -1.0}
-        self.truths.setdefault(topic, []).append((received, known.get(int(value.value), math.nan)))
+        self.found.truth(topic, received, known.get(int(value.value), math.nan))
 
     def joint_states(self, topic: str, received: int, message: Any) -> None:
-        """Take the states of joints. Their time is that of reception if the header has none."""
-        stamp = self._stamp(message.header.stamp)
-        if stamp:
-            self.offsets.append(received - stamp)
-        builder = self.joints if stamp else self._received_joints
-        builder.add(topic, stamp or received, message.name, message.position, message.effort)
+        """Take the states of joints."""
+        time = self._stamp(message.header.stamp), received
+        self.found.joints(topic, time, message.name, message.position, message.effort)
 
     def wrench(self, topic: str, received: int, message: Any) -> None:
-        """Take the size of a force. Its time is that of the header or, without one, of reception."""
-        stamp, force = self._stamp(message.header.stamp), message.wrench.force
-        if stamp:
-            self.offsets.append(received - stamp)
-        self._wrenches.add(topic, stamp or received, [FORCE], [math.hypot(force.x, force.y, force.z)])
+        """Take the size of a force."""
+        force = message.wrench.force
+        time = self._stamp(message.header.stamp), received
+        self.found.force(topic, time, math.hypot(force.x, force.y, force.z))
 
     def contacts(self, topic: str, received: int, message: Any) -> None:
         """Take whether a contact sensor reports a contact, as a truth value."""
         found = message.states if hasattr(message, "states") else message.contacts
-        self.truths.setdefault(topic, []).append((received, 1.0 if len(found) else -1.0))
+        self.found.truth(topic, received, 1.0 if len(found) else -1.0)
 
     def goal_states(self, topic: str, received: int, message: Any) -> None:
         """Take the states of an action's goals."""
@@ -162,39 +145,17 @@ class RosContents:
 
     def finish(self) -> LogContents:
         """Return the contents, with times in s since the earliest message that is used."""
-        shift = self._shift()
-        texts = sorted((received - shift, topic, text) for received, topic, text in (*self.texts, *self.goals.texts))
-        truths = {topic: sorted((time - shift, one) for time, one in found) for topic, found in self.truths.items()}
-        stamps = [*self.builder.bounds(), *(time - shift for time in self._received.bounds())]
-        stamps += [*self.joints.bounds(), *(time - shift for time in self._received_joints.bounds())]
-        stamps += [*self._wrenches.bounds(), *(time for time, _, _ in texts)]
-        stamps += [time for found in truths.values() for time, _ in found]
-        begin, end = min(stamps, default=0), max(stamps, default=0)
-        tracks = self.builder.tracks(begin) | self._received.tracks(begin + shift)
-        return LogContents(
-            {frame: track for frame, track in tracks.items() if not self.lists.ambiguous(frame)},
-            tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in texts),
-            (end - begin) / 1e9,
-            (*self.remarks, *self.lists.remarks(), *self.goals.remarks, *self.joints.remarks),
-            {topic: _truths(found, begin) for topic, found in truths.items()},
-            self._received_joints.tracks(begin + shift) | self.joints.tracks(begin),
-            {topic: found[FORCE] for topic, found in self._wrenches.tracks(begin).items()},
+        for received, topic, text in self.goals.texts:
+            self.found.text(topic, received, text)
+        found = self.found.finish()
+        return replace(
+            found,
+            tracks={frame: track for frame, track in found.tracks.items() if not self.lists.ambiguous(frame)},
+            remarks=(HOW_STAMPED, *self.remarks, *found.remarks, *self.lists.remarks(), *self.goals.remarks),
         )
 
-    def _shift(self) -> int:
-        """Return by how much (ns) the clock of reception is ahead of the headers' clock; 0 if they are the same."""
-        self.remarks.insert(0, "messages are stamped by their headers, and those without one by their reception")
-        offset = int(np.median(self.offsets)) if self.offsets else 0
-        if abs(offset) <= MIN_OFFSET * 1e9:
-            return 0
-        words = f"the time of reception is {offset / 1e9:.3f} s ahead of the headers, and was corrected"
-        self.remarks.insert(1, words)
-        return offset
-
-    def _stamped(self, name: str, received: int, header: Any, pose: Any) -> None:
-        stamp = self._stamp(header.stamp)
-        self.offsets.append(received - stamp)
-        _add(self.builder, name, header.frame_id, stamp, pose)
+    def _pose(self, topic: str, frame: str, received: int, header: Any, pose: Any) -> None:
+        self.found.pose(topic, frame, header.frame_id, (self._stamp(header.stamp), received), _pose(pose))
 
     def _stamp(self, stamp: Any) -> int:
         """Return the corrected time of a header; 0 if it has none."""
@@ -246,10 +207,9 @@ HEADERLESS = frozenset(
 """Types whose messages have the time of their reception."""
 
 
-def _add(builder: TrackBuilder, frame: str, parent: str, stamp: int, pose: Any) -> None:
+def _pose(pose: Any) -> Pose:
     where, turn = pose.position, pose.orientation
-    place, rotation = (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
-    builder.add(frame.lstrip("/"), parent.lstrip("/"), stamp, place, rotation)
+    return (where.x, where.y, where.z), (turn.w, turn.x, turn.y, turn.z)
 
 
 def _detected(one: Any) -> str:
@@ -269,11 +229,6 @@ def _detected_pose(one: Any) -> Any:
     best = max(one.results, key=lambda result: float(getattr(result, "hypothesis", result).score))
     place = best.pose.pose.position
     return best.pose.pose if any((place.x, place.y, place.z)) else one.bbox.center
-
-
-def _truths(found: list[tuple[int, float]], begin: int) -> Truths:
-    times = np.array([time - begin for time, _ in found]) / 1e9
-    return Truths(times, np.array([value for _, value in found]))
 
 
 def _stamp(stamp: Any) -> int:

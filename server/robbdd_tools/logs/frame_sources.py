@@ -1,0 +1,111 @@
+"""Frames that several topics publish: which topic counts, and what the frames of the others are called."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.logs.log_contents import TrackBuilder
+
+if TYPE_CHECKING:
+    from robbdd_tools.logs.log_contents import Track
+
+TRANSFORMS = "tf"
+STATIC = "tf_static"
+MAX_LISTED = 4
+
+
+@dataclass
+class FrameSources:
+    """The poses of frames by the topic that publishes them.
+
+    Two robots may each have a ``base_link``, in transforms of their own (``/r1/tf``, ``/r2/tf``). A frame of another
+    topic, such as the odometry of wheels, is never mixed with that of the transforms.
+    """
+
+    _transforms: dict[str, TrackBuilder] = field(default_factory=dict[str, TrackBuilder])
+    _topics: dict[str, TrackBuilder] = field(default_factory=dict[str, TrackBuilder])
+
+    def of_transforms(self, topic: str) -> TrackBuilder:
+        """Return the builder of a topic of transforms; the static ones of a namespace are with the others."""
+        space, _, name = topic.rpartition("/")
+        group = f"{space}/{TRANSFORMS}" if name == STATIC else topic
+        return self._transforms.setdefault(group, TrackBuilder())
+
+    def of_topic(self, topic: str) -> TrackBuilder:
+        """Return the builder of a topic that publishes poses."""
+        return self._topics.setdefault(topic, TrackBuilder())
+
+    def absorb(self, other: FrameSources) -> None:
+        """Add the poses of another object."""
+        for topic, builder in other._transforms.items():
+            self.of_transforms(topic).absorb(builder)
+        for topic, builder in other._topics.items():
+            self.of_topic(topic).absorb(builder)
+
+    def drop(self, topic: str, frame: str) -> None:
+        """Forget the poses of a frame on a topic."""
+        space, _, name = topic.rpartition("/")
+        group = f"{space}/{TRANSFORMS}" if name == STATIC else topic
+        for builder in (self._transforms.get(group), self._topics.get(topic)):
+            if builder is not None:
+                builder.drop(frame)
+
+    def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
+        """Replace the times (ns) of all poses."""
+        for builder in (*self._transforms.values(), *self._topics.values()):
+            builder.retime(convert)
+
+    def bounds(self) -> list[int]:
+        """Return the times of the earliest and latest poses that are not static, ns."""
+        return [time for one in (*self._transforms.values(), *self._topics.values()) for time in one.bounds()]
+
+    def tracks(self, begin: int, remarks: list[str]) -> dict[str, Track]:
+        """Return the tracks by their names, with times in s since ``begin`` (ns). ``remarks`` gets what was decided."""
+        moved = {topic: builder.tracks(begin, remarks) for topic, builder in self._transforms.items()}
+        found = _joined(moved, remarks)
+        others: dict[str, dict[str, Track]] = {}
+        for topic, builder in self._topics.items():
+            for frame, track in builder.tracks(begin, remarks).items():
+                others.setdefault(frame, {})[topic] = track
+        for frame, tracks in others.items():
+            if frame in found:
+                remarks += _outranked(frame, found[frame], tracks)
+            elif len(tracks) == 1:
+                found[frame] = next(iter(tracks.values()))
+            else:
+                found |= {topic.strip("/"): track for topic, track in tracks.items()}
+                listed = ", ".join(f"'{topic.strip('/')}'" for topic in tracks)
+                remarks.append(f"several topics have poses of '{frame}': they are called {listed}")
+        return found
+
+
+def _joined(groups: Mapping[str, dict[str, Track]], remarks: list[str]) -> dict[str, Track]:
+    """Return the transforms of all namespaces. A frame that several have is called by its namespace and its name."""
+    count: dict[str, int] = {}
+    for tracks in groups.values():
+        for frame in tracks:
+            count[frame] = count.get(frame, 0) + 1
+    found: dict[str, Track] = {}
+    for topic, tracks in groups.items():
+        space = topic.strip("/")
+        space = space.removesuffix(TRANSFORMS).rstrip("/") if space.rpartition("/")[2] == TRANSFORMS else space
+        names = {frame: f"{space}/{frame}" for frame in tracks if count[frame] > 1 and space}
+        for frame, track in tracks.items():
+            found[names.get(frame, frame)] = replace(track, parent=names.get(track.parent, track.parent))
+        if names:
+            listed = ", ".join(f"'{name}'" for name in list(names.values())[:MAX_LISTED])
+            listed += f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+            remarks.append(f"several topics have frames of the same names: those of '{topic}' are called {listed}")
+    return found
+
+
+def _outranked(frame: str, used: Track, others: Mapping[str, Track]) -> list[str]:
+    """Return sentences on topics whose poses are not used: the transforms have the frame, with another parent."""
+    return [
+        f"'{frame}' is in '{track.parent}' on '{topic}', but in '{used.parent}' by the transforms, which are used"
+        for topic, track in others.items()
+        if track.parent != used.parent
+    ]

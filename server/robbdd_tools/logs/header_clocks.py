@@ -1,0 +1,188 @@
+"""Compare the clocks of headers with the clock of reception, and convert times of reception to that of the headers."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    Nanoseconds = npt.NDArray[np.int64]
+
+MIN_OFFSET = 1_000_000_000
+"""Difference (ns) from which two clocks are different ones; smaller ones may be delays of messages."""
+MIN_DRIFT = 100_000_000
+"""Change (ns) of the difference from which it is not the same throughout a log."""
+EVERY = 50_000_000
+"""Time of reception (ns) between two pairs that are kept."""
+PARTS = 10
+"""Parts of a log whose differences are compared."""
+MAX_RATIO = 100
+"""Ratio of the two clocks' speeds from which the times of reception were not recorded when messages arrived."""
+MAX_LISTED = 4
+
+Source = tuple[str, str]
+"""A topic, and on topics of transforms a frame: what one program publishes."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeaderTime:
+    """The clock of the headers, by times of reception.
+
+    - ``received``, ``stamps``: (n,) ns, increasing; pairs between which times are interpolated. Without pairs, the
+      clocks differ by ``offset``.
+    - ``offset``: by how much (ns) the clock of reception is ahead.
+    - ``unusable``: sources whose headers have another clock, or one that jumps back.
+    - ``timeless``: true if the times of reception do not say when messages without headers were published.
+    """
+
+    offset: int = 0
+    received: Nanoseconds = field(default_factory=lambda: np.empty(0, np.int64))
+    stamps: Nanoseconds = field(default_factory=lambda: np.empty(0, np.int64))
+    unusable: frozenset[Source] = frozenset()
+    timeless: bool = False
+    remarks: tuple[str, ...] = ()
+
+    def of(self, received: Nanoseconds) -> Nanoseconds:
+        """Return times of reception (n,) in the clock of the headers, ns. Beyond the pairs, the difference stays."""
+        if not len(self.received):
+            return received - self.offset
+        inside = np.clip(received, self.received[0], self.received[-1])
+        begin, base = self.received[0], self.stamps[0]
+        # Floating-point numbers of 53 bits hold a hundred days in ns, but not the time since 1970.
+        asked, known, stamps = (
+            one.astype(float) for one in (inside - begin, self.received - begin, self.stamps - base)
+        )
+        moved = np.asarray(np.interp(asked, known, stamps), dtype=float)
+        return base + np.rint(moved).astype(np.int64) + (received - inside)
+
+
+@dataclass
+class HeaderClocks:
+    """Collects when messages were received, and when their headers say that they were recorded, in ns."""
+
+    stated: Collection[str] = ()
+    """Topics whose clocks the user has stated: they count as corrected."""
+    _sources: dict[Source, _Pairs] = field(default_factory=dict[Source, "_Pairs"])
+
+    def seen(self, topic: str, frame: str, received: int, stamp: int) -> None:
+        """Take a message; messages are in the order of their reception."""
+        pairs = self._sources.get((topic, frame))
+        if pairs is None:
+            pairs = self._sources[topic, frame] = _Pairs()
+        pairs.add(received, stamp)
+
+    def header_time(self) -> HeaderTime:
+        """Return the clock that most headers have, and the sources that do not have it."""
+        jumps = {source: float(pairs.jump) for source, pairs in self._sources.items() if pairs.jump}
+        remarks = [_jump_words(*one) for one in _grouped(jumps)]
+        known = {source: pairs.arrays() for source, pairs in self._sources.items() if source not in jumps}
+        if not known:
+            return HeaderTime(unusable=frozenset(jumps), remarks=tuple(remarks))
+        reference = _reference(known)
+        received, stamps = known[reference]
+        if _ratio(received, stamps) > MAX_RATIO:
+            words = "the times of reception do not say when messages arrived, so those without a header are not used"
+            return HeaderTime(unusable=frozenset(jumps), timeless=True, remarks=(*remarks, words))
+        clock = HeaderTime(received=received, stamps=np.maximum.accumulate(stamps))
+        others = {
+            source: ahead
+            for source, pairs in known.items()
+            if source[0] not in self.stated and abs(ahead := _ahead(*pairs, clock)) > MIN_OFFSET
+        }
+        remarks += [_other_words(*one, reference[0]) for one in _grouped(others)]
+        unusable = frozenset((*jumps, *others))
+        if (drift := _drift(received, stamps)) > MIN_DRIFT:
+            words = "the difference of the clocks of headers and of reception changes"
+            words += f" by {drift / 1e9:.3f} s: times of reception were converted by the headers of '{reference[0]}'"
+            return HeaderTime(0, received, clock.stamps, unusable, remarks=(words, *remarks))
+        every = [times - headers for source, (times, headers) in known.items() if source not in others]
+        offset = int(np.median(np.concatenate(every)))
+        if abs(offset) <= MIN_OFFSET:
+            return HeaderTime(unusable=unusable, remarks=tuple(remarks))
+        words = f"the time of reception is {offset / 1e9:.3f} s ahead of the headers, and was corrected"
+        return HeaderTime(offset, unusable=unusable, remarks=(words, *remarks))
+
+
+@dataclass
+class _Pairs:
+    """Times of reception and of headers of a source, ns: those of a part of its messages, in the order of reception."""
+
+    received: array[int] = field(default_factory=lambda: array("q"))
+    stamps: array[int] = field(default_factory=lambda: array("q"))
+    last: tuple[int, int] = (0, 0)
+    jump: int = 0
+    """By how much (ns) the clock of the headers jumped back; 0 if it never did."""
+
+    def add(self, received: int, stamp: int) -> None:
+        before, newest = self.last
+        if received > before and newest - stamp > MIN_OFFSET:
+            self.jump = max(self.jump, newest - stamp)
+        self.last = received, stamp
+        if (
+            not self.received
+            or received - self.received[-1] >= EVERY
+            or abs((received - stamp) - (self.received[-1] - self.stamps[-1])) > MIN_DRIFT
+        ):
+            self.received.append(received)
+            self.stamps.append(stamp)
+
+    def arrays(self) -> tuple[Nanoseconds, Nanoseconds]:
+        return np.array(self.received, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
+
+
+def _reference(known: dict[Source, tuple[Nanoseconds, Nanoseconds]]) -> Source:
+    """Return the source whose clock counts: that of reception if a source has it, then the one with most messages."""
+    offsets = {source: float(np.median(received - stamps)) for source, (received, stamps) in known.items()}
+    near = [source for source, offset in offsets.items() if abs(offset) <= MIN_OFFSET]
+    return max(near or known, key=lambda source: len(known[source][0]))
+
+
+def _drift(received: Nanoseconds, stamps: Nanoseconds) -> float:
+    """Return the largest difference of the clocks' offsets (ns) between parts of a log."""
+    parts = np.array_split(received - stamps, min(PARTS, len(received)))
+    medians = [float(np.median(one)) for one in parts]
+    return max(medians) - min(medians)
+
+
+def _ratio(received: Nanoseconds, stamps: Nanoseconds) -> float:
+    span, headers = float(np.ptp(received)), float(np.ptp(stamps))
+    return headers / max(span, 1.0) if headers > MIN_OFFSET else 1.0
+
+
+def _ahead(received: Nanoseconds, stamps: Nanoseconds, clock: HeaderTime) -> float:
+    """Return by how much (ns) the headers of a source are ahead of a clock, where both were received if possible."""
+    inside = (received >= clock.received[0]) & (received <= clock.received[-1])
+    chosen = inside if inside.any() else np.ones(len(received), bool)
+    return float(np.median(stamps[chosen] - clock.of(received[chosen])))
+
+
+def _grouped(found: Mapping[Source, float]) -> list[tuple[str, str, float]]:
+    """Return each topic with words for it and its frames, and the largest of their values."""
+    topics: dict[str, list[tuple[str, float]]] = {}
+    for (topic, frame), value in found.items():
+        topics.setdefault(topic, []).append((frame, value))
+    rows: list[tuple[str, str, float]] = []
+    for topic, entries in topics.items():
+        frames = [f"'{frame}'" for frame, _ in entries if frame not in ("", topic.strip("/"))]
+        listed = ", ".join(frames[:MAX_LISTED])
+        listed += f" and {len(frames) - MAX_LISTED} more" if len(frames) > MAX_LISTED else ""
+        largest = max((value for _, value in entries), key=abs)
+        rows.append((topic, f"{listed} on '{topic}'" if frames else f"'{topic}'", largest))
+    return rows
+
+
+def _jump_words(_: str, called: str, back: float) -> str:
+    words = f"the headers of {called} jump back by {back / 1e9:.3f} s, so they are not used"
+    return f"{words}: cut the log where a simulator was reset or a clock was set, and judge the parts"
+
+
+def _other_words(topic: str, called: str, ahead: float, reference: str) -> str:
+    side = "ahead of" if ahead > 0 else "behind"
+    words = f"the headers of {called} are {abs(ahead) / 1e9:.3f} s {side} those of '{reference}'"
+    hint = f"state --clock {topic}={ahead / 1e9:.3f} if their clock is wrong, or --clock {topic}=0 if it is right"
+    return f"{words}, so they are not used: {hint}"

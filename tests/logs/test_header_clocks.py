@@ -1,0 +1,177 @@
+"""Clocks of headers and of reception: conversion of times, clocks that differ, jump or run at another speed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from logs.bags import Message, joints, pose, text, transform, truth, wrench, write
+from robbdd_tools.logs.header_clocks import HeaderClocks
+from robbdd_tools.logs.log_contents import LogContents
+from robbdd_tools.logs.open_log import read_log
+
+SECOND = 1_000_000_000
+WALL = 1_700_000_000 * SECOND
+
+
+def read(folder: Path, messages: list[Message], clocks: dict[str, float] | None = None) -> LogContents:
+    return read_log(write(folder / "drive", sorted(messages, key=lambda one: one.received)), clocks=clocks)
+
+
+def of(clocks: HeaderClocks, *received: int) -> list[int]:
+    return clocks.header_time().of(np.array(received, dtype=np.int64)).tolist()
+
+
+@given(
+    st.floats(0.05, 5.0),
+    st.integers(-(10**9), 10**9),
+    st.floats(0.0, 0.05),
+    st.integers(0, 2**32 - 1),
+    st.floats(0.0, 1.0),
+)
+def test_a_time_of_reception_is_converted_within_the_delays_of_messages(
+    speed: float, offset: int, delay: float, seed: int, share: float
+) -> None:
+    """A simulator runs at any speed, and messages arrive up to ``delay`` (s) late."""
+    random = np.random.default_rng(seed)
+    clocks = HeaderClocks()
+    published = WALL + np.arange(0, 20 * SECOND, SECOND // 50)
+    headers = offset + np.rint((published - WALL) * speed).astype(np.int64) + SECOND
+    received = published + np.rint(random.uniform(0, delay, len(published)) * 1e9).astype(np.int64)
+    order = np.argsort(received, kind="stable")
+    for when, stamp in zip(received[order].tolist(), headers[order].tolist(), strict=True):
+        clocks.seen("/tf", "cup", when, stamp)
+    clock = clocks.header_time()
+    begin, end = int(received.min()), int(received.max())
+    asked = begin + round(share * (end - begin))
+    true = offset + SECOND + (asked - WALL) * speed
+    (found,) = clock.of(np.array([asked], dtype=np.int64)).tolist()
+    if len(clock.received):
+        # Pairs are 50 ms apart, and each of them is late by at most the delay.
+        assert abs(found - true) <= (speed * delay + 1e-6) * 1e9 + 1
+    else:
+        # The clocks drift apart by less than 0.1 s, so they count as differing by a constant.
+        assert abs(found - true) <= (speed * delay + 0.1) * 1e9
+
+
+def test_clocks_that_run_alike_differ_by_a_constant() -> None:
+    clocks = HeaderClocks()
+    for tick in range(100):
+        clocks.seen("/tf", "cup", WALL + tick * SECOND // 10, 5 * SECOND + tick * SECOND // 10)
+    clock = clocks.header_time()
+    assert clock.offset == WALL - 5 * SECOND
+    assert of(clocks, WALL + 3 * SECOND, WALL - SECOND) == [8 * SECOND, 4 * SECOND]
+    assert clock.unusable == frozenset()
+
+
+def test_small_differences_are_delays_and_not_clocks() -> None:
+    clocks = HeaderClocks()
+    for tick in range(100):
+        clocks.seen("/tf", "cup", WALL + tick * SECOND // 10 + 900_000_000, WALL + tick * SECOND // 10)
+    assert of(clocks, WALL) == [WALL]
+    assert clocks.header_time().remarks == ()
+
+
+def simulated(speed: float) -> list[Message]:
+    """A cup that is seen at 50 Hz for 10 s of simulated time, and an event in the middle."""
+    seen = [
+        transform("cup", (tick / 50, 0, 0), stamp=1 + tick / 50, received=1000 + tick / 50 / speed)
+        for tick in range(501)
+    ]
+    return [*seen, text("pick-end", 1000 + 5 / speed)]
+
+
+@pytest.mark.parametrize("speed", [0.2, 0.5, 1.0, 3.0])
+def test_an_event_is_at_the_same_simulated_time_at_each_speed(speed: float, tmp_path: Path) -> None:
+    found = read(tmp_path, simulated(speed))
+    assert [one.time for one in found.texts] == [pytest.approx(5.0, abs=1e-6)]
+    assert found.end == pytest.approx(10.0)
+    changes = any("times of reception were converted by the headers of '/tf'" in one for one in found.remarks)
+    assert changes == (speed != 1.0)
+
+
+def test_events_after_a_jump_forward_keep_their_place_between_the_poses(tmp_path: Path) -> None:
+    jumped = [
+        transform("cup", (0, 0, 0), stamp=tick / 50 + (3 if tick > 250 else 0), received=tick / 50)
+        for tick in range(1, 501)
+    ]
+    found = read(tmp_path, [*jumped, text("pick-start", 4.0), text("pick-end", 6.0)])
+    assert [round(one.time, 2) for one in found.texts] == [3.98, 8.98]
+
+
+def test_a_source_that_jumps_back_is_not_used(tmp_path: Path) -> None:
+    """A bag was played twice while it was recorded: at each time, the cup was at two places."""
+    twice = [
+        transform("cup", (play, 0, 0), stamp=1 + tick / 50, received=1000 + 12 * play + tick / 50)
+        for play in range(2)
+        for tick in range(501)
+    ]
+    steady = [pose("/mug", (0, 0, 0), stamp=1000 + tick / 10) for tick in range(200)]
+    found = read(tmp_path, [*twice, *steady])
+    assert np.isnan(found.tracks["cup"].positions).all()
+    assert np.isfinite(found.tracks["mug"].positions).all()
+    assert any("the headers of 'cup' on '/tf' jump back by 10.000 s" in one for one in found.remarks)
+    assert found.end == pytest.approx(19.9)
+
+
+def camera(ahead: float) -> list[Message]:
+    """A tool by the robot's clock, and a cup by that of a camera's computer."""
+    tool = [transform("tool", (0, 0, 0), stamp=100 + tick / 50) for tick in range(501)]
+    cup = [pose("/camera/cup", (tick / 30, 0, 0), stamp=100 + tick / 30 + ahead) for tick in range(301)]
+    return [*tool, *(Message(one.topic, one.received - ahead, one.kind, one.make) for one in cup)]
+
+
+@pytest.mark.parametrize(("ahead", "side"), [(3.0, "ahead of"), (-2.0, "behind")])
+def test_a_source_with_another_clock_is_used_only_if_its_clock_is_stated(
+    ahead: float, side: str, tmp_path: Path
+) -> None:
+    found = read(tmp_path / "plain", camera(ahead))
+    assert np.isnan(found.tracks["camera/cup"].positions).all()
+    words = f"the headers of '/camera/cup' are {abs(ahead):.3f} s {side} those of '/tf', so they are not used"
+    assert [one for one in found.remarks if words in one and f"--clock /camera/cup={ahead:.3f}" in one]
+    moved = read(tmp_path / "moved", camera(ahead), {"/camera/cup": ahead}).tracks["camera/cup"]
+    assert moved.times[:2].tolist() == pytest.approx([0.0, 1 / 30], abs=1e-6)
+    kept = read(tmp_path / "kept", camera(ahead), {"/camera/cup": 0.0}).tracks["camera/cup"]
+    assert np.isfinite(kept.positions).all()
+    assert kept.times[1] - kept.times[0] == pytest.approx(1 / 30, abs=1e-6)
+
+
+def test_joints_and_forces_of_another_clock_are_not_used(tmp_path: Path) -> None:
+    tool = [transform("tool", (0, 0, 0), stamp=100 + tick / 50) for tick in range(501)]
+    late = [joints(["q1"], [0.0], 50 + tick / 10, received=100 + tick / 10) for tick in range(100)]
+    forces = [wrench("/ft", (0, 0, 1), 50 + tick / 10) for tick in range(100)]
+    pushed = [Message(one.topic, one.received + 50, one.kind, one.make) for one in forces]
+    found = read(tmp_path, [*tool, *late, *pushed])
+    assert (found.joints, found.forces) == ({}, {})
+
+
+def test_messages_without_stamps_have_the_time_of_their_reception(tmp_path: Path) -> None:
+    unstamped = [transform("cup", (tick / 10, 0, 0), stamp=0.0, received=50 + tick / 10) for tick in range(1, 11)]
+    found = read(tmp_path / "alone", [*unstamped, text("pick-end", 50.5), wrench("/ft", (0, 0, 1), 50.4)])
+    assert found.tracks["cup"].times.tolist() == pytest.approx(np.arange(10) / 10)
+    assert [round(one.time, 6) for one in found.texts] == [0.4]
+    others = [transform("tool", (0, 0, 0), stamp=7 + tick / 10, received=50 + tick / 10) for tick in range(1, 11)]
+    found = read(tmp_path / "both", [*unstamped, *others])
+    assert found.tracks["cup"].times.tolist() == pytest.approx(found.tracks["tool"].times)
+
+
+def test_texts_are_not_used_if_all_messages_were_received_at_one_time(tmp_path: Path) -> None:
+    """A converter that does not keep the times of reception: events have no time."""
+    seen = [transform("cup", (0, 0, 0), stamp=1 + tick / 50, received=5.0) for tick in range(501)]
+    found = read(tmp_path, [*seen, text("pick-end", 5.0), truth("/seen", True, 5.0)])
+    assert (found.texts, found.truths) == ((), {})
+    assert any("the times of reception do not say when messages arrived" in one for one in found.remarks)
+    assert np.isfinite(found.tracks["cup"].positions).all()
+
+
+def test_a_first_message_without_a_stamp_joins_the_others_of_its_frame(tmp_path: Path) -> None:
+    """Some drivers send a stamp only from their second message on; so does simulated time that begins at zero."""
+    found = read(tmp_path, [transform("cup", (tick, 0, 0), stamp=float(tick)) for tick in range(3)])
+    assert found.tracks["cup"].positions[:, 0].tolist() == [0, 1, 2]
+    moved = [transform("cup", (0, 0, 0), stamp=0.0, received=1.0, parent="camera")]
+    other = read(tmp_path / "parent", [*moved, transform("cup", (0, 0, 0), stamp=2.0)])
+    assert any("'cup' has two parents, 'map' and 'camera'" in one for one in other.remarks)
