@@ -6,12 +6,14 @@ import json
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from kit import EXAMPLES
-from logs.bags import ROS2, Message, detected, goals, write
+from logs.bags import ROS2, Message, detected, goals, transform, write
 from logs.drives import ONE, clauses, drive, judged, robbdd, verdicts
 
 pytestmark = pytest.mark.physics
@@ -241,3 +243,58 @@ def test_the_clock_of_a_source_moves_when_a_clause_is_judged(models: Path, tmp_p
     assert verdicts(found)["at-goal"] == "violated"
     wrong = robbdd(models, "judge", str(tmp_path / "drive"), "pickplace.bdd", *ONE, "--clock", "/tf=soon")
     assert "'/tf=soon' must be TOPIC=SECONDS, for example /camera/pose=0.12" in wrong.stderr
+
+
+def twice() -> list[Message]:
+    """The robot puts the cube into the bin, and then, 20 s later, beside it."""
+    again = drive(end=(0.55, 0.0, 0.825))
+    late = [moved_by(one, 20.0) for one in again if one.topic != "/tf_static"]
+    return [*drive(), *late]
+
+
+def moved_by(one: Message, seconds: float) -> Message:
+    if one.topic != "/tf":
+        return replace(one, received=one.received + seconds)
+    (found,) = one.make(ROS2).transforms
+    where = found.transform.translation
+    return transform(found.child_frame_id, (where.x, where.y, where.z), stamp=one.received + seconds)
+
+
+def test_a_log_of_two_executions_is_refused_until_one_is_chosen(models: Path, tmp_path: Path) -> None:
+    bag = write(tmp_path / "both", twice())
+    done = robbdd(models, "judge", str(bag), "pickplace.bdd", "--no-store", *ONE)
+    assert done.returncode == 2
+    words = "the log reports 'pick-start' again at 21.00 s, after 'place-end' at 8.00 s: it has more than one execution"
+    assert f"{words}; choose one with --from SECONDS and --until SECONDS, for example --until 14.5" in done.stderr
+    first, _ = judged(models, tmp_path, twice(), "--until", "14.5")
+    assert verdicts(first)["at-goal"] == "holds"
+    second, _ = judged(models, tmp_path, twice(), "--from", "14.5")
+    assert verdicts(second)["at-goal"] == "violated"
+    (goal,) = (one for one in second if one["name"].endswith("at-goal"))
+    assert goal["at"] == pytest.approx(13.5)
+    whole, _ = judged(models, tmp_path, twice(), "--from", "0")
+    assert verdicts(whole)["at-goal"] == "holds"
+
+
+def test_numbers_on_a_topic_report_events(models: Path, tmp_path: Path) -> None:
+    def number(value: int, received: float) -> Message:
+        def make(store: Any) -> Any:
+            return store.types["std_msgs/msg/UInt8"](data=value)
+
+        return Message("/task", received, "std_msgs/msg/UInt8", make)
+
+    states = [number(value, time) for value, time in ((0, 0.5), (1, 1.0), (2, 3.0), (4, 8.0))]
+    silent = [one for one in drive() if one.topic != "/events"]
+    declared = [
+        f"evt-{name}=/task becomes {value}" for name, value in (("pick-start", 1), ("pick-end", 2), ("place-end", 4))
+    ]
+    more = [word for one in declared for word in ("--event", one)]
+    found, _ = judged(models, tmp_path, [*silent, *states], *more)
+    assert set(verdicts(found).values()) == {"holds"}, found
+    for stated, words in (
+        ("evt-pik=/task becomes 1", "the scenario has no event 'evt-pik'; nearest: evt-pick-end, evt-pick-start"),
+        ("evt-pick-end=task", "'evt-pick-end=task' declares no event: write EVENT=/topic"),
+    ):
+        done = robbdd(models, "judge", str(tmp_path / "drive"), "pickplace.bdd", "--no-store", *ONE, "--event", stated)
+        assert done.returncode == 2
+        assert words in done.stderr

@@ -25,16 +25,20 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.coordination import END, emitter
 from robbdd_tools.judging.decisions import decide, occurred
+from robbdd_tools.judging.log_executions import check_one_execution
+from robbdd_tools.judging.log_names import check_events
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.logs.log_contents import LogContents
+from robbdd_tools.logs.log_period import cut
 from robbdd_tools.logs.log_table import read_events
 from robbdd_tools.logs.open_log import read_log
 from robbdd_tools.monitor.curve import Curve
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence
+from robbdd_tools.protocol.event_signals import read_event_signal
 from robbdd_tools.protocol.log_request import LOG_REQUEST, LogRequest
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.messages import (
@@ -60,7 +64,7 @@ from robbdd_tools.world.log_views import observed_views, verdict_views
 def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator[RunMessage]:
     (spec,) = manifest.scenarios
     began = perf_counter()
-    contents = _contents(request)
+    contents = _contents(request, spec)
     yield RunStarted(1, f"log {Path(request.path).name}")
     yield ScenarioStarted(0)
     try:
@@ -93,12 +97,17 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
     yield RunFinished(True)
 
 
-def _contents(request: LogRequest) -> LogContents:
-    contents = read_log(Path(request.path), request.columns, request.clocks)
-    if not request.annotations:
+def _contents(request: LogRequest, spec: ScenarioSpec) -> LogContents:
+    signals = tuple(map(read_event_signal, request.signals))
+    check_events([one.event for one in signals], spec)
+    contents = read_log(Path(request.path), request.columns, request.clocks, signals)
+    if request.annotations:
+        texts = sorted((*contents.texts, *read_events(Path(request.annotations))), key=lambda stamp: stamp.time)
+        contents = replace(contents, texts=tuple(texts))
+    if request.begin is None and request.end is None:
+        check_one_execution(spec, contents.texts)
         return contents
-    texts = sorted((*contents.texts, *read_events(Path(request.annotations))), key=lambda stamp: stamp.time)
-    return replace(contents, texts=tuple(texts))
+    return cut(contents, request.begin or 0.0, request.end)
 
 
 def verdict_on(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Verdict:

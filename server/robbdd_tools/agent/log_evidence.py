@@ -136,6 +136,8 @@ def _times(
     reported = [found.times for found in contents.truths.values()]
     edges = [*(stamp.time for stamp in events), 0.0, contents.end]
     times = np.unique(np.concatenate([kept, *reported, edges]))
+    # Poses just outside of a period only serve to interpolate those in it.
+    times = times[(times >= 0.0) & (times <= contents.end)]
     # Without a sample in a gap, a clause would be judged across it.
     long = np.diff(times) > request.max_gap
     return np.unique(np.concatenate([times, (times[:-1] + times[1:])[long] / 2]))

@@ -31,6 +31,11 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--grip", metavar="AGENT[/OBJECT]=SIGNAL", type=_grip, action="append", help=text)
     text = "by how many seconds the clock of the headers on a topic of a ROS bag is ahead; repeats"
     log.add_argument("--clock", metavar="TOPIC=SECONDS", type=_clock, action="append", help=text)
+    text = "messages that report an event: 'evt-pick-end=/gripper/closed becomes true'; repeats"
+    log.add_argument("--event", metavar="EVENT=SIGNAL", type=_event, action="append", help=text)
+    text = "begin of the period that is judged, in seconds since the begin of the log"
+    log.add_argument("--from", dest="begin", metavar="SECONDS", type=_moment, help=text)
+    log.add_argument("--until", dest="end", metavar="SECONDS", type=_moment, help="end of the period that is judged")
     log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
     text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
     log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
@@ -65,6 +70,9 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
         dict(options.column or ()),
         tuple(options.grip or ()),
         clocks,
+        tuple(options.event or ()),
+        options.begin,
+        options.end,
     )
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)
@@ -97,6 +105,26 @@ def _grip(text: str) -> str:
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
     return text
+
+
+def _event(text: str) -> str:
+    from robbdd_tools.protocol.event_signals import read_event_signal
+
+    try:
+        read_event_signal(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
+def _moment(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = -1.0
+    if not 0 <= seconds < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' must be a time in seconds since the begin of the log")
+    return seconds
 
 
 def _uncertainty(text: str) -> tuple[str, float]:

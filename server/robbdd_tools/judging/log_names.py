@@ -53,6 +53,15 @@ def elements_of(stated: Mapping[str, V], elements: Iterable[str]) -> dict[str, V
     return found
 
 
+def check_events(stated: Iterable[str], spec: ScenarioSpec) -> None:
+    """Raise ``NoElement`` if a name is neither an event of a scenario nor one of its behaviour."""
+    names = [local_name(event) for event in spec.events]
+    known = [*names, *dict.fromkeys(spec.events.values())]
+    for name in stated:
+        if name not in spec.events and inner_event(name, known) is None:
+            raise NoElement(f"the scenario has no event '{name}'{_nearest(name, sorted(names))}")
+
+
 def stated_frames(spec: ScenarioSpec) -> dict[str, str]:
     """Return the frames that the observations of a scenario's policies name for elements (``string`` mappers)."""
     policies = () if spec.execution is None else spec.execution.policies

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcap.reader import make_reader
 
 from robbdd_tools.base.files import open_regular
+from robbdd_tools.logs.event_watch import EventWatch
 from robbdd_tools.logs.log_collector import LogCollector
 from robbdd_tools.logs.log_contents import UnreadableLog
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from robbdd_tools.logs.log_contents import LogContents
+    from robbdd_tools.protocol.event_signals import EventSignal
 
 TRANSFORMS, TRANSFORM, POSE = "foxglove.FrameTransforms", "foxglove.FrameTransform", "foxglove.PoseInFrame"
 LOG = "foxglove.Log"
@@ -40,17 +43,25 @@ def encodings(path: Path) -> set[str]:
     return found
 
 
-def read_foxglove(path: Path) -> LogContents:
-    """Return the contents of an MCAP file with JSON messages: transforms, poses and texts. Raises ``UnreadableLog``."""
-    found = LogCollector()
+def read_foxglove(path: Path, signals: Iterable[EventSignal] = ()) -> LogContents:
+    """Return the contents of an MCAP file with JSON messages: transforms, poses and texts.
+
+    ``signals`` report events by messages of any type, at their reception. Raises ``UnreadableLog``.
+    """
+    found, watch = LogCollector(), EventWatch(signals)
     try:
-        for topic, kind, received, message in _messages(path):
-            _take(found, topic, kind, received, message)
+        for topic, kind, received, message in _messages(path, watch.topics):
+            if kind in READ:
+                _take(found, topic, kind, received, message)
+            for event in watch.events(topic, message) if topic in watch.topics else ():
+                found.text(topic, received, event)
+        watch.check(_topics(path) if watch.topics else ())
     except UnreadableLog as error:
         raise UnreadableLog(f"{path}: {error}") from None
     except Exception as error:  # On damaged bytes the decoder raises exceptions of several types.
         raise UnreadableLog(f"{path} cannot be read as MCAP: {error or type(error).__name__}") from error
-    return found.finish()
+    contents = found.finish()
+    return replace(contents, remarks=(*watch.remarks, *contents.remarks))
 
 
 def _take(found: LogCollector, topic: str, kind: str, received: int, message: Any) -> None:
@@ -74,11 +85,18 @@ def _take(found: LogCollector, topic: str, kind: str, received: int, message: An
             found.joints(topic, (_header_stamp(message), received), message["name"], positions, efforts)
 
 
-def _messages(path: Path) -> Iterator[tuple[str, str, int, Any]]:
+def _messages(path: Path, watched: Collection[str]) -> Iterator[tuple[str, str, int, Any]]:
     with open_regular(path) as file:
         for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
-            if schema is not None and channel.message_encoding == "json" and schema.name in READ:
-                yield channel.topic, schema.name, message.log_time, json.loads(message.data)
+            kind = "" if schema is None else schema.name
+            if channel.message_encoding == "json" and (kind in READ or channel.topic in watched):
+                yield channel.topic, kind, message.log_time, json.loads(message.data)
+
+
+def _topics(path: Path) -> set[str]:
+    with open_regular(path) as file:
+        summary = make_reader(file).get_summary()
+        return set() if summary is None else {one.topic for one in summary.channels.values()}
 
 
 READ = {TRANSFORMS, TRANSFORM, POSE, LOG, JOINTS, *ROS_JOINTS}

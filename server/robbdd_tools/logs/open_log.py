@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.logs.foxglove_mcap import encodings, read_foxglove
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.log_table import read_table
 from robbdd_tools.logs.ros_bag import read_ros_bag
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.event_signals import EventSignal
 
 METADATA = "metadata.yaml"
 SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
@@ -20,24 +24,30 @@ def is_log(path: Path) -> bool:
 
 
 def read_log(
-    path: Path, columns: Mapping[str, str] | None = None, clocks: Mapping[str, float] | None = None
+    path: Path,
+    columns: Mapping[str, str] | None = None,
+    clocks: Mapping[str, float] | None = None,
+    signals: Sequence[EventSignal] = (),
 ) -> LogContents:
     """Return the contents of a log. ``columns`` maps names of a table's columns to titles in the file, and
-    ``clocks`` topics of a ROS bag to the time (s) by which the clock of their headers is ahead.
+    ``clocks`` topics of a ROS bag to the time (s) by which the clock of their headers is ahead. ``signals`` report
+    events, which are texts then.
 
     Raises ``UnreadableLog``.
     """
     if path.is_dir():
-        return _checked(path, read_ros_bag(path, clocks))
+        return _checked(path, read_ros_bag(path, clocks, signals))
     match path.suffix.lower():
         case ".csv":
             found = read_table(path, columns)
         case ".mcap" if "json" in encodings(path):
-            found = read_foxglove(path)
+            found = read_foxglove(path, signals)
         case ".bag" | ".db3" | ".mcap":
-            return _checked(path, read_ros_bag(path, clocks))
+            return _checked(path, read_ros_bag(path, clocks, signals))
         case _:
             raise UnreadableLog(f"{path} is no log: name a rosbag2 folder, or a file {', '.join(SUFFIXES)}")
+    if signals and path.suffix.lower() == ".csv":
+        raise UnreadableLog(f"{path} has no topics: name the events of a table in a column 'event'")
     if clocks:
         raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for ROS bags only")
     return _checked(path, found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.logs.event_watch import EventWatch
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.ros_definitions import known_types
 from robbdd_tools.logs.ros_messages import HEADERLESS, READERS, RosContents
@@ -12,12 +13,16 @@ from robbdd_tools.logs.ros_messages import HEADERLESS, READERS, RosContents
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
+    from robbdd_tools.protocol.event_signals import EventSignal
+
 NO_ROSBAGS = "reading ROS bags needs the extra 'logs': pip install 'robbdd-tools[logs]'"
 MAX_LISTED = 8
 
 
-def read_ros_bag(path: Path, clocks: Mapping[str, float] | None = None) -> LogContents:
-    """Return the contents of a bag.
+def read_ros_bag(
+    path: Path, clocks: Mapping[str, float] | None = None, signals: Iterable[EventSignal] = ()
+) -> LogContents:
+    """Return the contents of a bag. ``signals`` report events by messages of any type, at their reception.
 
     Poses are stamped by the headers of their messages. Messages without a header are stamped by their reception.
     If the two clocks differ, the time of reception is moved by the median difference, and a remark says so.
@@ -30,21 +35,32 @@ def read_ros_bag(path: Path, clocks: Mapping[str, float] | None = None) -> LogCo
         known = known_types()
     except ImportError:
         raise UnreadableLog(NO_ROSBAGS) from None
-    contents = RosContents(clocks or {})
+    contents, watch = RosContents(clocks or {}), EventWatch(signals)
     topic = ""
     try:
         # Bags of ROS 2 before Iron do not contain the definitions of their types.
         with AnyReader([path], default_typestore=known) as reader:
             defined = reader.typestore.fielddefs
-            wanted = [one for one in reader.connections if one.msgtype in READERS and one.msgtype in defined]
-            contents.remarks += _not_read(reader.connections, defined)
-            ahead = dict(_clocks(clocks or {}, {one.topic: str(one.msgtype) for one in wanted}))
+            wanted = [
+                one
+                for one in reader.connections
+                if (one.msgtype in READERS or one.topic in watch.topics) and one.msgtype in defined
+            ]
+            watch.check({one.topic for one in reader.connections})
+            contents.remarks += _not_read([one for one in reader.connections if one not in wanted], defined)
+            stamped = {one.topic: str(one.msgtype) for one in wanted if one.msgtype in READERS}
+            ahead = dict(_clocks(clocks or {}, stamped))
             for connection, received, raw in reader.messages(connections=wanted) if wanted else ():
                 topic = f": '{connection.topic}' ({connection.msgtype})"
                 message = reader.deserialize(raw, connection.msgtype)
                 contents.ahead = ahead.get(connection.topic, 0)
-                READERS[connection.msgtype](contents, connection.topic, received, message)
+                if connection.msgtype in READERS:
+                    READERS[connection.msgtype](contents, connection.topic, received, message)
+                if connection.topic in watch.topics:
+                    for event in watch.events(connection.topic, message):
+                        contents.found.text(connection.topic, received, event)
                 topic = ""
+        contents.remarks += watch.remarks
         return contents.finish()
     except UnreadableLog as error:
         raise UnreadableLog(f"{path}: {error}") from None

@@ -96,6 +96,10 @@ class RosContents:
         """Take a text, which may report an event."""
         self.found.text(topic, received, str(message.data))
 
+    def log_line(self, topic: str, received: int, message: Any) -> None:
+        """Take a line of a program's log, which may report an event."""
+        self.found.text(topic, received, str(message.msg))
+
     def diagnostics(self, topic: str, received: int, message: Any) -> None:
         """Take the changes of components' states as texts on ``topic/NAME``."""
         for one in message.status:
@@ -179,6 +183,8 @@ READERS: Mapping[str, Callable[[RosContents, str, int, Any], None]] = {
     "gazebo_msgs/msg/ContactsState": RosContents.contacts,
     "ros_gz_interfaces/msg/Contacts": RosContents.contacts,
     "std_msgs/msg/String": RosContents.text,
+    "rcl_interfaces/msg/Log": RosContents.log_line,
+    "rosgraph_msgs/msg/Log": RosContents.log_line,
     "diagnostic_msgs/msg/DiagnosticArray": RosContents.diagnostics,
     "std_msgs/msg/Bool": RosContents.truth,
     "bdd_ros2_interfaces/msg/Trinary": RosContents.trinary,
@@ -197,6 +203,8 @@ HEADERLESS = frozenset(
         "ros_gz_interfaces/msg/Contacts",
         "std_msgs/msg/String",
         "std_msgs/msg/Bool",
+        "rcl_interfaces/msg/Log",
+        "rosgraph_msgs/msg/Log",
         "diagnostic_msgs/msg/DiagnosticArray",
         "bdd_ros2_interfaces/msg/Trinary",
         "bdd_ros2_interfaces/msg/TrinaryStamped",

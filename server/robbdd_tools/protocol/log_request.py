@@ -26,6 +26,8 @@ class LogRequest:
     - ``columns``: maps the name of a column of a table to its title in the file.
     - ``grips``: signals that say when an agent holds something, as ``protocol/grip_signals`` reads them.
     - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
+    - ``signals``: signals that report events, as ``protocol/event_signals`` reads them.
+    - ``begin``, ``end``: the period that is judged, s since the begin of the log; ``None`` if the user states none.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -42,3 +44,6 @@ class LogRequest:
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
     grips: tuple[str, ...] = ()
     clocks: Mapping[str, float] = field(default_factory=dict[str, float])
+    signals: tuple[str, ...] = ()
+    begin: float | None = None
+    end: float | None = None

@@ -55,6 +55,9 @@ class LogNames:
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
     grips: tuple[str, ...] = ()
     clocks: Mapping[str, float] = field(default_factory=dict[str, float])
+    signals: tuple[str, ...] = ()
+    begin: float | None = None
+    end: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +89,9 @@ def judge_log(
     columns: Mapping[str, str] | None = None,
     grips: Sequence[str] = (),
     clocks: Mapping[str, float] | None = None,
+    signals: Sequence[str] = (),
+    begin: float | None = None,
+    end: float | None = None,
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -106,6 +112,8 @@ def judge_log(
     - ``columns``: maps the name of a column of a table (``time``, ``frame``, ``x`` …) to its title in the file.
     - ``grips``: signals that say when an agent holds something: ``("ur10=/vacuum", "ur10=joint finger above 5 mm")``.
     - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
+    - ``signals``: messages that report events: ``("evt-pick-end=/gripper/closed becomes true",)``.
+    - ``begin``, ``end``: the period of the log that is judged, s since its begin.
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
     Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
@@ -125,6 +133,9 @@ def judge_log(
         dict(columns or {}),
         tuple(grips),
         dict(clocks or {}),
+        tuple(signals),
+        begin,
+        end,
     )
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
@@ -172,6 +183,9 @@ class LogJudgement:
             dict(names.columns),
             names.grips,
             dict(names.clocks),
+            names.signals,
+            names.begin,
+            names.end,
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)
