@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.campaign.rates import executions_needed, pairs_needed
 from robbdd_tools.campaign.run_comparison import Change, ClauseEffect, Decision, RunComparison
-from robbdd_tools.run.report import MINUS, margin
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.report import MINUS, SIGNS, margin
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.effects import MarginEffect, Rate
+    from robbdd_tools.workbench.comparison import ClauseChange, ExecutionChange
 
 HEADER = ("clause", "before", "after", "change of pass rate", "change of margin", "result")
 POWER = 0.8
@@ -107,6 +109,24 @@ def markdown(title: str, found: RunComparison, notes: Sequence[str]) -> str:
     )
 
 
+def deciding_clauses(change: ExecutionChange) -> Sequence[ClauseChange]:
+    """Return the clauses that explain why an execution flipped: what is unknown now follows from what is violated."""
+    return [clause for clause in change.clauses if clause.after is Outcome.VIOLATED] or change.clauses
+
+
+def moved_words(clause: ClauseChange) -> str:
+    """Return the verdicts and margins of a clause before and after."""
+    old = f"{SIGNS[clause.before]} {margin(clause.margin_before, clause.unit)}" if clause.before else "—"
+    new = f"{SIGNS[clause.after]} {margin(clause.margin_after, clause.unit)}" if clause.after else "—"
+    return f"{old.strip()} → {new.strip()}"
+
+
+def signed(value: float) -> str:
+    """Return a number with its sign and one decimal."""
+    rounded = f"{abs(value):.1f}"
+    return rounded if float(rounded) == 0.0 else f"{MINUS if value < 0 else '+'}{rounded}"
+
+
 def _needed(effect: ClauseEffect, accepted: float, found: RunComparison) -> int:
     if found.matched.paired:
         flipped = (effect.rates.gained + effect.rates.lost + 1) / (effect.before.total + 2)
@@ -122,9 +142,9 @@ def _rate(counted: Rate) -> str:
 
 def _points(effect: ClauseEffect) -> str:
     """Return the change of the pass rate in points, with its interval."""
-    low, high = (_signed(value * 100) for value in (effect.rates.interval.low, effect.rates.interval.high))
+    low, high = (signed(value * 100) for value in (effect.rates.interval.low, effect.rates.interval.high))
     difference = effect.rates.difference
-    moved = "unknown" if difference is None else f"{_signed(difference * 100)} points"
+    moved = "unknown" if difference is None else f"{signed(difference * 100)} points"
     return f"{moved} [{low}, {high}]"
 
 
@@ -132,11 +152,6 @@ def _margins(effect: MarginEffect) -> str:
     values = (effect.difference, effect.interval.low, effect.interval.high)
     mean, low, high = (margin(value, effect.unit) for value in values)
     return f"{mean} [{low}, {high}]"
-
-
-def _signed(value: float) -> str:
-    rounded = f"{abs(value):.1f}"
-    return rounded if float(rounded) == 0.0 else f"{MINUS if value < 0 else '+'}{rounded}"
 
 
 def _number(value: float) -> str:

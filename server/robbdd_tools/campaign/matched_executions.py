@@ -69,7 +69,7 @@ def match(before: Iterable[ExecutionResult], after: Iterable[ExecutionResult]) -
     An execution is identified by its variant, values, ``.bddx`` execution and repetition. A clause that is repeated
     within an execution counts with its worst verdict and its smallest margin.
     """
-    one, other = ({_key(result): result for result in run} for run in (before, after))
+    one, other = ({execution_key(result): result for result in run} for run in (before, after))
     shared = [(one[key], other[key]) for key in one if key in other]
     if not shared:
         raise NothingShared("the runs have no execution of the same scenario with the same values in common")
@@ -100,7 +100,8 @@ def _unshared(
     return tuple(removed.values()), tuple(added.values())
 
 
-def _key(result: ExecutionResult) -> str:
+def execution_key(result: ExecutionResult) -> str:
+    """Return what identifies an execution in two runs."""
     return json.dumps([result.variant, dict(result.values), result.execution, result.repetition], sort_keys=True)
 
 

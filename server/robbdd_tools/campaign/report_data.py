@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,18 +10,22 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from robbdd_tools.campaign.rates import Interval, rate_interval
+from robbdd_tools.campaign.value_bins import bins_of, in_order
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.json_documents import NoTrace, stored_curves
 from robbdd_tools.run.plot import plot
 from robbdd_tools.run.readable import title
 from robbdd_tools.run.report import margin, plain_sentence, value_words
 
 if TYPE_CHECKING:
+    from robbdd_tools.campaign.report_moments import Moment
+    from robbdd_tools.campaign.report_source import ReportSource
+    from robbdd_tools.campaign.value_bins import Bins
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
-    from robbdd_tools.workbench.stored import PastRun
 
 MOST_SHOWN = 20
 """So many executions that do not hold are shown in full."""
+MISSING = "—"
+"""The level of an execution without the variable."""
 _BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
 
 
@@ -51,7 +54,10 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class ClauseRow:
-    """A clause over all executions. ``least`` and ``middle`` are the smallest and the median margin in words."""
+    """A clause over all executions. ``least`` and ``middle`` are the smallest and the median margin in words.
+
+    ``vacuous`` is why it could not have failed in any execution; empty if it could.
+    """
 
     name: str
     role: str
@@ -59,6 +65,7 @@ class ClauseRow:
     counts: Counts
     least: str
     middle: str
+    vacuous: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +82,7 @@ class JudgedRow:
 
 @dataclass(frozen=True, slots=True)
 class FailedRow:
-    """An execution that does not hold. ``command`` simulates it again."""
+    """An execution that does not hold. ``command`` simulates it again; empty if there is none."""
 
     name: str
     values: str
@@ -83,6 +90,7 @@ class FailedRow:
     seed: int
     command: str
     clauses: tuple[JudgedRow, ...]
+    moment: Moment | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,14 +126,19 @@ def clause_rows(results: Sequence[ExecutionResult]) -> list[ClauseRow]:
 def factors(results: Sequence[ExecutionResult]) -> list[Factor]:
     """Return the factors with several levels, in the order of the executions."""
     names = ["variant", *dict.fromkeys(name for result in results for name in result.values)]
-    found = (_factor(name, results) for name in names)
+    bins = bins_of(result.values for result in results)
+    found = (_factor(name, results, bins.get(name)) for name in names)
     return [factor for factor in found if len(factor.levels) > 1]
 
 
-def failed_rows(run: PastRun, results: Sequence[ExecutionResult]) -> list[FailedRow]:
-    """Return the executions that do not hold, the worst first: violated before unknown, then by their margins."""
-    failed = sorted((one for one in results if one.verdict is not Outcome.HOLDS), key=_rank)
-    return [_failed_row(run, one) for one in failed[:MOST_SHOWN]]
+def worst(results: Iterable[ExecutionResult]) -> list[ExecutionResult]:
+    """Return the executions to show in full, the worst first: violated before unknown, then by their margins."""
+    return sorted((one for one in results if one.verdict is not Outcome.HOLDS), key=_rank)[:MOST_SHOWN]
+
+
+def failed_rows(source: ReportSource) -> list[FailedRow]:
+    """Return the worst executions that do not hold."""
+    return [_failed_row(source, one) for one in worst(source.results)]
 
 
 def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> ClauseRow:
@@ -135,7 +148,8 @@ def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> Clause
     found = counts(clause.verdict for _, clause in pairs)
     sentences = dict.fromkeys(plain_sentence(clause.sentence) for _, clause in pairs)
     sentence = next(iter(sentences)) if len(sentences) == 1 else _with_variables(next(iter(sentences)), pairs[0][0])
-    return ClauseRow(title(first.name, first.sentence), first.role, sentence, found, least, middle)
+    vacuous = first.vacuous if all(clause.vacuous for _, clause in pairs) else ""
+    return ClauseRow(title(first.name, first.sentence), first.role, sentence, found, least, middle, vacuous)
 
 
 def _with_variables(sentence: str, result: ExecutionResult) -> str:
@@ -146,17 +160,21 @@ def _with_variables(sentence: str, result: ExecutionResult) -> str:
     return sentence
 
 
-def _factor(name: str, results: Sequence[ExecutionResult]) -> Factor:
-    words = [_level(name, result) for result in results]
-    levels = {level: number for number, level in enumerate(dict.fromkeys(words))}
+def _factor(name: str, results: Sequence[ExecutionResult], bins: Bins | None) -> Factor:
+    words = [_level(name, result, bins) for result in results]
+    known = in_order(dict.fromkeys(word for word in words if word != MISSING), bins)
+    levels = {level: number for number, level in enumerate([*known, *({MISSING} & set(words))])}
     shown = value_words(name, "").removesuffix(" = ")
     return Factor(shown, tuple(levels), tuple(levels[level] for level in words))
 
 
-def _level(name: str, result: ExecutionResult) -> str:
+def _level(name: str, result: ExecutionResult, bins: Bins | None) -> str:
     if name == "variant":
         return result.name.rpartition(" -- ")[0]
-    return value_words(name, result.values.get(name, "")).partition(" = ")[2] if name in result.values else "—"
+    if name not in result.values:
+        return MISSING
+    value = result.values[name]
+    return value_words(name, value).partition(" = ")[2] if bins is None else bins.word(value)
 
 
 def _rank(result: ExecutionResult) -> tuple[int, float, int]:
@@ -164,16 +182,12 @@ def _rank(result: ExecutionResult) -> tuple[int, float, int]:
     return _BADNESS.index(result.verdict), min(margins, default=0.0), result.index
 
 
-def _failed_row(run: PastRun, result: ExecutionResult) -> FailedRow:
-    try:
-        curves: Mapping[str, object] = stored_curves(run.place, result.index)
-    except NoTrace:
-        curves = {}
-    lines = [clause.line for clause in run.place.manifest().scenarios[result.index].clauses]
-    clauses = tuple(_judged_rows(result, lines, curves))
+def _failed_row(source: ReportSource, result: ExecutionResult) -> FailedRow:
+    curves, lines = source.curves(result)
+    clauses = tuple(_judged_rows(result, lines or (0,) * len(result.clauses), curves))
     values = ", ".join(value_words(name, value) for name, value in result.values.items())
-    command = shlex.join(["robbdd", "replay", str(run.number or run.folder), "--scenario", result.name])
-    return FailedRow(result.name, values, result.verdict, result.seed, command, clauses)
+    moment = source.moments.get(result.index)
+    return FailedRow(result.name, values, result.verdict, result.seed, source.command(result), clauses, moment)
 
 
 def _judged_rows(result: ExecutionResult, lines: Sequence[int], curves: Mapping[str, object]) -> Iterator[JudgedRow]:

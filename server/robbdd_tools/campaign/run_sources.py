@@ -1,17 +1,20 @@
-"""Find what is to be compared: stored runs, and results files of ``robbdd run --json``."""
+"""Find what is to be compared: stored runs, results files of ``robbdd run --json``, and studies."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import UnreadableFile, load_bytes
 from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.campaign.study_executions import study_executions
+from robbdd_tools.campaign.study_source import names_study, stored_study
 from robbdd_tools.run.imported import BrokenResults, read_results
+from robbdd_tools.run.report import value_word, variable_word
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results
 from robbdd_tools.workbench.stored import PastRun, find_run
 
@@ -25,18 +28,34 @@ class NotResults(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class RunSource:
-    """The results to compare. ``name`` says where they are from; ``place`` is the stored run, if it is one."""
+    """The results to compare.
+
+    - ``name``: where they are from. ``place``: the stored run, if it is one.
+    - ``is_study``: whether they are of a study, which knows its clauses by their names.
+    - ``study``: its file, if that was named. ``executed``: all its executions, with all levels of factors.
+    - ``facts``: what a study used, by name: versions and digests.
+    """
 
     name: str
     results: tuple[ExecutionResult, ...]
     place: StoredRun | None = None
+    is_study: bool = False
+    study: Path | None = None
+    executed: tuple[ExecutionResult, ...] = ()
+    facts: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 def run_source(word: str, path: Path, store: Path | None = None) -> RunSource:
-    """Return the results that ``word`` names: a results file (``.json``), a stored run's number, folder, or ``latest``.
+    """Return the results that ``word`` names.
 
-    ``path`` is in the project, ``store`` another folder of runs. Raises ``NotResults`` and ``NoSuchRun``.
+    It is a results file (``.json``), a stored run's number or folder, ``latest``, or a study: its file (``.study``) or
+    the folder of its results, both optionally with levels of factors that its executions must have
+    (``cell.study:robot=panda,range=dense``). ``path`` is in the project, ``store`` another folder of runs or studies.
+    Raises ``NotResults``, ``NoSuchRun``, ``StudyProblem`` and ``DatabaseProblem``.
     """
+    named, levels = _levels_of(word)
+    if names_study(named):
+        return _study(word, named, levels, store)
     file = Path(word)
     if file.suffix == ".json":
         return RunSource(word, _from_file(file))
@@ -47,6 +66,52 @@ def stored_source(run: PastRun) -> RunSource:
     """Return the results of a stored run. Raises ``NoSuchRun``."""
     name = f"run {run.number}" if run.number else str(run.folder)
     return RunSource(f"{name} ({run.record.path}, seed {run.record.seed})", run.results, run.place)
+
+
+def _levels_of(word: str) -> tuple[str, Mapping[str, str]]:
+    """Split a study's name from the levels after it. A name with a colon stays whole if it has no levels."""
+    name, colon, text = word.rpartition(":")
+    if not colon or not names_study(name):
+        return word, {}
+    levels: dict[str, str] = {}
+    for part in text.split(","):
+        factor, equals, level = part.partition("=")
+        if not (factor.strip() and equals and level.strip()):
+            raise NotResults(f"{word}: write levels as FACTOR=LEVEL, separated by commas, not '{part}'")
+        levels[factor.strip()] = level.strip()
+    return name, levels
+
+
+def _study(word: str, named: str, levels: Mapping[str, str], store: Path | None) -> RunSource:
+    with stored_study(named, store) as stored:
+        executed, facts = study_executions(stored.rows()), stored.facts()
+    results = executed
+    for factor, level in levels.items():
+        results = _with_level(word, results, factor, level)
+    total = int(facts.get("total", len(executed)))
+    some = f", {len(executed)} of {total} executions" if len(executed) < total else ""
+    name, file = f"{word} (study {facts.get('name', '')}{some})", Path(named) if Path(named).is_file() else None
+    return RunSource(name, results, is_study=True, study=file, executed=executed, facts=facts)
+
+
+def _with_level(word: str, results: Iterable[ExecutionResult], factor: str, level: str) -> tuple[ExecutionResult, ...]:
+    """Return the executions with a level of a factor. All of them have it, so it is left out of their values."""
+    results = tuple(results)
+    names = dict.fromkeys(name for result in results for name in result.values)
+    wanted = [name for name in names if factor in (name, variable_word(name))]
+    if not wanted:
+        known = ", ".join(map(variable_word, names))
+        raise NotResults(f"{word}: the study has no factor or variable '{factor}'; it has {known}")
+    (name, *_) = wanted
+    found = tuple(one for one in results if name in one.values and level in _words(one.values[name]))
+    if not found:
+        known = ", ".join(dict.fromkeys(value_word(one.values[name]) for one in results if name in one.values))
+        raise NotResults(f"{word}: no execution has {factor} = '{level}'; its levels are {known}")
+    return tuple(replace(one, values={key: value for key, value in one.values.items() if key != name}) for one in found)
+
+
+def _words(value: object) -> tuple[str, str]:
+    return str(value), value_word(value)
 
 
 def _from_file(path: Path) -> tuple[ExecutionResult, ...]:

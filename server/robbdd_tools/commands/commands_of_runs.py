@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Protocol
 
+from robbdd_tools.commands.arguments import positive
 from robbdd_tools.commands.log_arguments import allow_log, judge_options
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.run_arguments import allow_policy, allow_store, policy
@@ -26,9 +27,8 @@ def add_commands_of_runs(commands: AddsCommands) -> tuple[argparse.ArgumentParse
     """Add the commands, and return those that may execute users' code."""
     _add_runs(commands)
     _add_requirements(commands)
-    _add_compare(commands)
-    _add_report(commands)
-    return _add_replay(commands), _add_judge(commands), _add_export(commands)
+    others = _add_compare(commands), _add_report(commands)
+    return _add_replay(commands), _add_judge(commands), *others, _add_export(commands)
 
 
 def _add_runs(commands: AddsCommands) -> None:
@@ -84,9 +84,9 @@ def _add_judge(commands: AddsCommands) -> argparse.ArgumentParser:
     return judge
 
 
-def _add_compare(commands: AddsCommands) -> None:
-    compare = commands.add_parser("compare", help="decide whether a run is worse than another one")
-    text = f"{RUN}; or the results file of `robbdd run --json`"
+def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
+    compare = commands.add_parser("compare", help="decide whether a run or a study is worse than another one")
+    text = f"{RUN}; the results file of `robbdd run --json`; or a study with results, FILE.study[:FACTOR=LEVEL,…]"
     compare.add_argument("before", metavar="BEFORE", help=text)
     compare.add_argument("after", metavar="AFTER", help="as BEFORE")
     compare.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the runs' project")
@@ -98,17 +98,31 @@ def _add_compare(commands: AddsCommands) -> None:
     compare.add_argument("--json", metavar="OUT", type=Path, help="write the comparison to this file")
     text = "write the comparison to this file, for the summary of continuous integration"
     compare.add_argument("--markdown", metavar="OUT", type=Path, help=text)
+    text = "write the comparison as one page, with replays of executions that flipped side by side"
+    compare.add_argument("--html", metavar="OUT", type=Path, help=text)
+    text = "for --html, execute the first N executions of a study that flipped again, for their replays"
+    compare.add_argument("--again", metavar="N", type=positive, default=0, help=text)
+    text = "agent processes at a time for --again (default: as many as there are cores)"
+    compare.add_argument("--jobs", metavar="N", type=positive, help=text)
     allow_store(compare)
     compare.set_defaults(command=_compare)
+    return compare
 
 
-def _add_report(commands: AddsCommands) -> None:
-    report = commands.add_parser("report", help="write the report of a stored run as one HTML page")
-    report.add_argument("run", metavar="RUN", help=RUN)
+def _add_report(commands: AddsCommands) -> argparse.ArgumentParser:
+    report = commands.add_parser("report", help="write the report of a stored run or a study as one HTML page")
+    report.add_argument("run", metavar="RUN|FILE.study", help=f"{RUN}; or a study")
     report.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the run's project")
     report.add_argument("-o", "--output", metavar="FILE.html", type=Path, required=True)
+    text = "neither pictures nor replays of the worst executions"
+    report.add_argument("--no-pictures", action="store_true", help=text)
+    text = "execute the N worst executions of a study again, for their pictures and replays"
+    report.add_argument("--again", metavar="N", type=positive, default=0, help=text)
+    text = "agent processes at a time for --again (default: as many as there are cores)"
+    report.add_argument("--jobs", metavar="N", type=positive, help=text)
     allow_store(report)
     report.set_defaults(command=_report)
+    return report
 
 
 def _add_export(commands: AddsCommands) -> argparse.ArgumentParser:
@@ -155,6 +169,7 @@ def _judge(options: argparse.Namespace) -> int:
 
 def _compare(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.compare import CompareOptions, compare
+    from robbdd_tools.run.run_policy import Policy
 
     gates = tuple(options.gate or ())
     return compare(
@@ -168,14 +183,21 @@ def _compare(options: argparse.Namespace) -> int:
             options.by_margin,
             options.json,
             options.markdown,
+            options.html,
+            options.again,
+            Policy.of(jobs=options.jobs),
         )
     )
 
 
 def _report(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.write_report import write_report
+    from robbdd_tools.commands.write_report import ReportOptions, write_report
+    from robbdd_tools.run.run_policy import Policy
 
-    return write_report(options.run, options.path, options.output, options.store)
+    pictures, chosen = not options.no_pictures, Policy.of(jobs=options.jobs)
+    return write_report(
+        ReportOptions(options.run, options.path, options.output, options.store, pictures, options.again, chosen)
+    )
 
 
 def _export(options: argparse.Namespace) -> int:

@@ -1,25 +1,38 @@
-"""``robbdd compare``: decide whether a run is worse than another one, for people and for continuous integration."""
+"""``robbdd compare``: decide whether a run or study is worse than another, for people and continuous integration."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.campaign.aligned_sources import aligned, flipped
 from robbdd_tools.campaign.comparison_json import comparison_json
-from robbdd_tools.campaign.comparison_text import advice, conclusion, markdown, method_words, remarks, table
+from robbdd_tools.campaign.comparison_page import TracedRun, comparison_page, flips_of
+from robbdd_tools.campaign.comparison_text import (
+    advice,
+    conclusion,
+    deciding_clauses,
+    markdown,
+    method_words,
+    moved_words,
+    remarks,
+    table,
+)
 from robbdd_tools.campaign.gate import parse_gate
+from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.run_comparison import ComparisonOptions, Decision, compare_results
 from robbdd_tools.campaign.run_sources import run_source
+from robbdd_tools.campaign.study_again import execute_again
 from robbdd_tools.commands import CANNOT_TELL, FINDINGS, OK
 from robbdd_tools.commands.output import print_line
 from robbdd_tools.commands.run import Outputs, report_problems
-from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.readable import title
-from robbdd_tools.run.report import SIGNS, margin
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.comparison import compare as list_changes
 
 if TYPE_CHECKING:
@@ -37,7 +50,8 @@ class CompareOptions:
 
     - ``before``, ``after``: stored runs or results files. ``path`` is in the project, ``store`` another store.
     - ``gates``: texts such as ``no clause worse than 2 points``.
-    - ``json``, ``markdown``: output files.
+    - ``json``, ``markdown``, ``html``: output files.
+    - ``again``: so many of a study's executions that flipped are executed again, by ``policy``, for their replays.
     """
 
     before: str
@@ -49,6 +63,9 @@ class CompareOptions:
     by_margin: bool = False
     json: Path | None = None
     markdown: Path | None = None
+    html: Path | None = None
+    again: int = 0
+    policy: Policy = field(default_factory=Policy)
 
 
 def compare(options: CompareOptions) -> int:
@@ -63,13 +80,23 @@ def compare(options: CompareOptions) -> int:
 def _compare(options: CompareOptions) -> int:
     gate = parse_gate(options.gates)
     before, after = (run_source(word, options.path, options.store) for word in (options.before, options.after))
+    before, after, differing = aligned(before, after)
     found = compare_results(
         before.results, after.results, ComparisonOptions(gate, options.level, by_margin=options.by_margin)
     )
     title = f"{before.name} → {after.name}"
-    changes = _changes(before, after)
-    notes = [*(changes.inputs if changes else ()), *remarks(found)]
-    for line in (title, method_words(found), *notes, "", *table(found), "", *_flips(changes)):
+    listed = _listed(before, after)
+    changes = flipped(before, after) if listed is None else [change for change in listed.changes if change.flipped]
+    notes = [*(listed.inputs if listed else ()), *differing, *remarks(found)]
+    for line in (
+        title,
+        method_words(found),
+        *notes,
+        "",
+        *table(found),
+        "",
+        *_flips(changes, listed=listed is not None),
+    ):
         print_line(line)
     print_line(conclusion(found))
     hint = advice(found, gate.limit(""))
@@ -81,37 +108,68 @@ def _compare(options: CompareOptions) -> int:
     if options.markdown is not None:
         text = markdown(title, found, notes)
         replace_file(options.markdown, "".join(f"{printable(line)}\n" for line in text.splitlines()))
+    if options.html is not None:
+        moments = Moments()
+        with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+            sides = [
+                _recordings(
+                    options, source, [_index(change, later=later) for change in changes], Path(folder, str(later))
+                )
+                for later, source in enumerate((before, after))
+            ]
+            flips = flips_of(changes, (sides[0], sides[1]), moments)
+        replace_file(options.html, comparison_page(title, found, notes, flips, len(changes), moments))
     return CODES[found.decision]
 
 
-def _changes(before: RunSource, after: RunSource) -> Comparison | None:
+def _listed(before: RunSource, after: RunSource) -> Comparison | None:
     """Return which executions flipped, and what differs in the input; ``None`` unless both runs are stored."""
     if before.place is None or after.place is None:
         return None
     return list_changes(before.place, after.place)
 
 
-def _flips(changes: Comparison | None) -> Iterator[str]:
-    if changes is None or not changes.flipped:
+def _index(change: ExecutionChange, *, later: int) -> int:
+    side = change.after if later else change.before
+    assert side is not None
+    return side.index
+
+
+def _recordings(
+    options: CompareOptions, source: RunSource, indices: Sequence[int], folder: Path
+) -> Sequence[TracedRun]:
+    """Return where the executions number ``indices`` of a source were recorded.
+
+    The first ones of a study are executed again if that was asked for.
+    """
+    if source.place is not None:
+        results = source.results
+        return [TracedRun(source.place, results, {one.index: one.index for one in results})]
+    if source.study is None or not options.again:
+        return []
+    chosen = [source.executed[index] for index in indices[: options.again]]
+    found = execute_again(source.study, source.facts.get("digest"), chosen, folder, options.policy)
+    return [TracedRun(one.run.place, one.run.results, one.indices) for one in found]
+
+
+def _flips(changes: Sequence[ExecutionChange], *, listed: bool) -> Iterator[str]:
+    if not changes:
         return
-    flipped = [change for change in changes.changes if change.flipped]
-    yield f"{len(flipped)} execution{'s' * (len(flipped) > 1)} with other verdicts:"
-    for change in flipped[:MOST_FLIPS]:
+    yield f"{len(changes)} execution{'s' * (len(changes) > 1)} with other verdicts:"
+    for change in changes[:MOST_FLIPS]:
         yield from _flip(change)
-    if len(flipped) > MOST_FLIPS:
-        yield f"  … and {len(flipped) - MOST_FLIPS} more: *Compare Runs* of the editor lists all of them"
+    if len(changes) > MOST_FLIPS:
+        where = ": *Compare Runs* of the editor lists all of them" if listed else ""
+        yield f"  … and {len(changes) - MOST_FLIPS} more{where}"
     yield ""
 
 
 def _flip(change: ExecutionChange) -> Iterator[str]:
     places = dict.fromkeys(f"execution {side.index + 1}" for side in (change.before, change.after) if side is not None)
     yield f"  {change.name}  {change.values}  ({' → '.join(places)})"
-    # What is unknown now follows from what is violated now.
-    causes = [clause for clause in change.clauses if clause.after is Outcome.VIOLATED] or change.clauses
+    causes = deciding_clauses(change)
     for clause in causes:
-        old = f"{SIGNS[clause.before]} {margin(clause.margin_before, clause.unit)}" if clause.before else "—"
-        new = f"{SIGNS[clause.after]} {margin(clause.margin_after, clause.unit)}" if clause.after else "—"
         reason = f": {clause.reason}" if clause.reason else ""
-        yield f"      {title(clause.name, clause.name)}  {old.strip()} → {new.strip()}{reason}"
+        yield f"      {title(clause.name, clause.name)}  {moved_words(clause)}{reason}"
     if len(causes) < len(change.clauses):
         yield f"      and {len(change.clauses) - len(causes)} more"

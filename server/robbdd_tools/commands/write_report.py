@@ -1,26 +1,81 @@
-"""``robbdd report``: write the report of a stored run as one HTML page."""
+"""``robbdd report``: write the report of a stored run or of a study as one HTML page."""
 
 from __future__ import annotations
 
+import tempfile
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.campaign.report_data import worst
+from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.report_page import report_page
+from robbdd_tools.campaign.report_source import run_report, study_report, with_traces
+from robbdd_tools.campaign.study_again import execute_again
+from robbdd_tools.campaign.study_file import SUFFIX
+from robbdd_tools.campaign.study_source import names_study, stored_study
 from robbdd_tools.commands import OK
-from robbdd_tools.commands.output import print_note
+from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.commands.runs import print_unfinished
+from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.stored import find_run
 
+if TYPE_CHECKING:
+    from robbdd_tools.campaign.report_source import ReportSource
 
-def write_report(word: str, path: Path, output: Path, store: Path | None) -> int:
-    """Write the report of the run that ``word`` names; return the exit code."""
+
+@dataclass(frozen=True, slots=True)
+class ReportOptions:
+    """The options of ``robbdd report``.
+
+    - ``word``: names a run, a ``.study`` file or a folder with its results; ``path`` is in the run's project.
+    - ``again``: so many of a study's worst executions are executed again, by ``policy``, for pictures and replays.
+    """
+
+    word: str
+    path: Path
+    output: Path
+    store: Path | None = None
+    pictures: bool = True
+    again: int = 0
+    policy: Policy = field(default_factory=Policy)
+
+
+def write_report(options: ReportOptions) -> int:
+    """Write the report; return the exit code."""
+    is_study = names_study(options.word)
+    if options.again and not (options.word.endswith(SUFFIX) and Path(options.word).is_file()):
+        return fail("--again executes a study: name its file (FILE.study)")
+    write = _study if is_study else _run
 
     def work() -> int:
-        run = find_run(word, path, store=store)
-        replace_file(output, report_page(run))
-        print_unfinished(run.place, run.status)
-        print_note(f"the report is in {output}")
+        moments = Moments()
+        source = write(options, moments)
+        replace_file(options.output, report_page(source, moments.document(), moments.problem))
+        if moments.problem:
+            print_note(f"there are no pictures: {moments.problem}")
+        print_note(f"the report is in {options.output}")
         return OK
 
-    return report_problems(Outputs(report=output), viewer=False, work=work)
+    return report_problems(Outputs(report=options.output), viewer=False, work=work)
+
+
+def _run(options: ReportOptions, moments: Moments) -> ReportSource:
+    run = find_run(options.word, options.path, store=options.store)
+    source = run_report(run)
+    print_unfinished(run.place, run.status)
+    return replace(source, moments=moments.add(run.place, worst(source.results))) if options.pictures else source
+
+
+def _study(options: ReportOptions, moments: Moments) -> ReportSource:
+    with stored_study(options.word, options.store) as store:
+        source, digest = study_report(Path(options.word).name, store), store.fact("digest")
+    if not options.again:
+        return source
+    chosen = worst(source.results)[: options.again]
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        for again in execute_again(Path(options.word), digest, chosen, Path(folder), options.policy):
+            source = with_traces(source, again, moments if options.pictures else None)
+    return source

@@ -106,49 +106,55 @@ class Comparison:
         return sum(change.flipped for change in self.changes)
 
 
-def compare(before: StoredRun, after: StoredRun) -> Comparison:
-    """Compare two stored runs. Raises ``NoSuchRun``.
-
-    An execution is identified by its variant, values, ``.bddx`` execution and repetition, even if the model was edited.
-    """
-    one, other = _executions(before), _executions(after)
-    changes: list[ExecutionChange] = []
-    same = 0
-    for key in {**one, **other}:
-        change = _change(one.get(key), other.get(key))
-        if change is None:
-            same += 1
-        else:
-            changes.append(change)
-    changes.sort(key=lambda change: not change.flipped)
-    return Comparison(
-        tuple(_inputs(before.record(), after.record())), tuple(_clauses(one, other)), same, tuple(changes)
-    )
-
-
 @dataclass(frozen=True, slots=True)
-class _Executed:
+class Executed:
+    """A result to compare, its values in words, and whether its trace is stored."""
+
     values: str
     result: ExecutionResult
     trace: bool
 
     @property
     def side(self) -> Side:
+        """The execution without its clauses."""
         return Side(self.result.index, self.result.verdict, self.result.seed, self.trace)
 
 
-def _executions(run: StoredRun) -> dict[str, _Executed]:
+def compare(before: StoredRun, after: StoredRun) -> Comparison:
+    """Compare two stored runs. Raises ``NoSuchRun``.
+
+    An execution is identified by its variant, values, ``.bddx`` execution and repetition, even if the model was edited.
+    """
+    one, other = _executions(before), _executions(after)
+    changes, same = changes_between(one, other)
+    return Comparison(tuple(_inputs(before.record(), after.record())), tuple(_clauses(one, other)), same, changes)
+
+
+def changes_between(
+    before: Mapping[str, Executed], after: Mapping[str, Executed]
+) -> tuple[tuple[ExecutionChange, ...], int]:
+    """Return the executions that differ, those that flipped first, and the number of the others.
+
+    Executions with the same key are compared.
+    """
+    found = [_change(before.get(key), after.get(key)) for key in {**before, **after}]
+    changes = [change for change in found if change is not None]
+    changes.sort(key=lambda change: not change.flipped)
+    return tuple(changes), len(found) - len(changes)
+
+
+def _executions(run: StoredRun) -> dict[str, Executed]:
     """Return the executions of a run by their keys."""
     document = run.results()
     finished = finished_in(document)
-    found: dict[str, _Executed] = {}
+    found: dict[str, Executed] = {}
     for index, (spec, entry) in enumerate(zip(run.manifest().scenarios, document["scenarios"], strict=False)):
         trace = index in finished and trace_file(run.folder, index).is_file()
-        found[scenario_key(spec)] = _Executed(values_words(spec), execution_result(index, entry), trace)
+        found[scenario_key(spec)] = Executed(values_words(spec), execution_result(index, entry), trace)
     return found
 
 
-def _change(before: _Executed | None, after: _Executed | None) -> ExecutionChange | None:
+def _change(before: Executed | None, after: Executed | None) -> ExecutionChange | None:
     shown = after or before
     assert shown is not None
     if before is None or after is None:
@@ -187,7 +193,7 @@ def _by_iri(result: ExecutionResult) -> dict[str, list[ClauseResult]]:
     return found
 
 
-def _clauses(before: Mapping[str, _Executed], after: Mapping[str, _Executed]) -> Iterator[ComparedClause]:
+def _clauses(before: Mapping[str, Executed], after: Mapping[str, Executed]) -> Iterator[ComparedClause]:
     every = {clause.iri: clause for one in (*before.values(), *after.values()) for clause in one.result.clauses}
     one, other = _totals(before), _totals(after)
     for iri, clause in every.items():
@@ -196,7 +202,7 @@ def _clauses(before: Mapping[str, _Executed], after: Mapping[str, _Executed]) ->
         )
 
 
-def _totals(executions: Mapping[str, _Executed]) -> dict[str, ClauseTotals]:
+def _totals(executions: Mapping[str, Executed]) -> dict[str, ClauseTotals]:
     judged: dict[str, list[ClauseResult]] = {}
     for one in executions.values():
         for clause in one.result.clauses:

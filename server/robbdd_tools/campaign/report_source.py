@@ -1,0 +1,102 @@
+"""The contents of a report: a stored run or a study, as results with their environment."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.campaign.study_executions import study_executions
+from robbdd_tools.protocol.run_folder import curves_file
+from robbdd_tools.run.json_documents import NoTrace, stored_curves
+
+if TYPE_CHECKING:
+    from robbdd_tools.campaign.report_moments import Moment, Moments
+    from robbdd_tools.campaign.study_again import Again
+    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
+    from robbdd_tools.workbench.stored import PastRun
+
+
+@dataclass(frozen=True)
+class ReportSource:
+    """The contents of a report.
+
+    - ``state``: why it is not complete; empty if it is.
+    - ``environment``: names and values, in words.
+    - ``command``: returns the command that executes one of the results again; empty if there is none.
+    - ``curves``: returns the stored margins of one of the results over time, by feature line, and the feature lines
+      of its clauses; empty if none are stored.
+    """
+
+    title: str
+    results: tuple[ExecutionResult, ...]
+    state: str
+    environment: tuple[tuple[str, str], ...]
+    command: Callable[[ExecutionResult], str]
+    curves: Callable[[ExecutionResult], tuple[Mapping[str, object], tuple[int, ...]]]
+    moments: Mapping[int, Moment] = field(default_factory=dict[int, "Moment"])
+
+
+def run_report(run: PastRun) -> ReportSource:
+    """Return what the report of a stored run shows. Raises ``NoSuchRun``."""
+    record = run.record
+    rows = [("model", record.path), ("digest of its graph", record.digest), ("seed", str(record.seed))]
+    rows += [("RobBDD", record.version), ("simulator", record.simulator), ("log", record.log)]
+    rows += [(f"file {path}", digest) for path, digest in sorted(record.files.items())]
+
+    def command(result: ExecutionResult) -> str:
+        return shlex.join(["robbdd", "replay", str(run.number or run.folder), "--scenario", result.name])
+
+    def curves(result: ExecutionResult) -> tuple[Mapping[str, object], tuple[int, ...]]:
+        if not curves_file(run.folder, result.index).is_file():
+            return {}, ()
+        try:
+            kept = stored_curves(run.place, result.index)
+        except NoTrace:
+            return {}, ()
+        return kept, tuple(clause.line for clause in run.place.manifest().scenarios[result.index].clauses)
+
+    title = f"{record.path}: run {run.number}" if run.number else record.path
+    environment = tuple((name, value) for name, value in rows if value)
+    return ReportSource(title, run.results, run.status.words(), environment, command, curves)
+
+
+def study_report(name: str, store: StudyStore) -> ReportSource:
+    """Return what the report of a study shows; ``name`` is that of its file. Raises ``DatabaseProblem``."""
+    facts = store.facts()
+    results = study_executions(store.rows())
+    total = int(facts.get("total", len(results)))
+    state = "" if len(results) >= total else f"{len(results)} of {total} executions are stored"
+    shown = {"name": "study", "digest": "digest of the study", "version": "RobBDD", "simulator": "simulator"}
+    environment = [(words, facts[fact]) for fact, words in shown.items() if facts.get(fact)]
+    environment += [(fact, content) for fact, content in facts.items() if fact.startswith("files ")]
+    return ReportSource(name, results, state, tuple(environment), lambda _: "", lambda _: ({}, ()))
+
+
+def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> ReportSource:
+    """Add what was recorded when some executions of a study were executed again. The run's folder may be removed after.
+
+    Their clauses have sentences, too. Raises ``NoSuchRun``.
+    """
+    recorded = run_report(again.run)
+    chosen = [recorded.results[index] for index in again.indices.values()]
+    found: Mapping[int, Moment] = {} if moments is None else moments.add(again.run.place, chosen)
+    kept = {study: recorded.curves(recorded.results[index]) for study, index in again.indices.items()}
+    former = source.curves
+
+    def curves(result: ExecutionResult) -> tuple[Mapping[str, object], tuple[int, ...]]:
+        return kept.get(result.index) or former(result)
+
+    results = list(source.results)
+    for study, index in again.indices.items():
+        results[study] = replace(results[study], clauses=_with_sentences(results[study], recorded.results[index]))
+    shown = {study: found[index] for study, index in again.indices.items() if index in found}
+    return replace(source, results=tuple(results), curves=curves, moments={**source.moments, **shown})
+
+
+def _with_sentences(stored: ExecutionResult, again: ExecutionResult) -> tuple[ClauseResult, ...]:
+    """Return the clauses with the names of the study's store, by which it counts them, and the rest of the run."""
+    pairs = zip(stored.clauses, again.clauses, strict=True)
+    return tuple(replace(new, iri=old.iri, name=old.name) for old, new in pairs)

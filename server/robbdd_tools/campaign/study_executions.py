@@ -1,0 +1,63 @@
+"""The stored executions of a study as results, so that what reads runs can read studies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
+from typing import Any
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
+
+_LEVEL = "level."
+
+
+def study_executions(rows: Iterable[Mapping[str, Any]]) -> tuple[ExecutionResult, ...]:
+    """Return the executions in the ``rows`` of a study's store, in their order.
+
+    A study stores names of clauses alone, so these take the place of IRIs. Its factors are among the values.
+    """
+    return tuple(_executions(rows))
+
+
+def _executions(rows: Iterable[Mapping[str, Any]]) -> Iterator[ExecutionResult]:
+    for index, (_, group) in enumerate(groupby(rows, key=_key)):
+        clauses = list(group)
+        first = clauses[0]
+        yield ExecutionResult(
+            index,
+            first["scenario"],
+            "",
+            first["variant"],
+            first["variation"],
+            first["repetition"],
+            first["execution"],
+            "",
+            {name.removeprefix(_LEVEL): value for name, value in first.items() if name.startswith(_LEVEL)},
+            first["seed"],
+            Outcome(first["scenario_verdict"]),
+            first["duration"],
+            tuple(map(_clause, clauses)),
+        )
+
+
+def _key(row: Mapping[str, Any]) -> tuple[object, ...]:
+    names = ("variant", "variation", "execution", "repetition", "seed")
+    levels = sorted((name, str(value)) for name, value in row.items() if name.startswith(_LEVEL))
+    return (*levels, *(row[name] for name in names))
+
+
+def _clause(row: Mapping[str, Any]) -> ClauseResult:
+    return ClauseResult(
+        row["clause"],
+        row["clause"],
+        "",
+        "",
+        Outcome(row["verdict"]),
+        row["margin"],
+        row["unit"],
+        row["at"],
+        None,
+        row["reason"],
+        "",
+    )
