@@ -12,7 +12,8 @@ import pytest
 from campaign.study_agents import QuickAgent, write_study
 from robbdd_tools.campaign.rates import rate_interval
 from robbdd_tools.campaign.stopping import RatioTest, Ruling, UntilWidth
-from robbdd_tools.campaign.study_run import StudyProgress, StudyRun
+from robbdd_tools.campaign.study_progress import StudyProgress
+from robbdd_tools.campaign.study_run import StudyRun
 from robbdd_tools.cli import main
 from robbdd_tools.run import scheduler
 

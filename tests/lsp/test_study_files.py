@@ -12,14 +12,14 @@ from pytest_lsp import LanguageClient
 from kit import FOLDER, MODEL, SCENE
 from lsp_kit import CLIENTS, Editor
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.campaign.study_run import study_folder
+from robbdd_tools.campaign.study_place import study_folder
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp.framing import Forget, Request
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.study_lenses import study_lenses
 from robbdd_tools.lsp.worker import Inbox, Worker
 from robbdd_tools.names.project import Project
-from robbdd_tools.run.study_store import NAME
+from robbdd_tools.run.study_schema import NAME
 
 STUDY = 'import "pickplace.bdd"\n\nStudy s {\n    scenarios: { <gone> }\n    repeat: 0\n}\n'
 

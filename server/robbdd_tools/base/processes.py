@@ -19,6 +19,8 @@ from typing import Any, Protocol, TypedDict
 
 END_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that ask a program to end; a system may lack some."""
+CTRL_C: int = signal.SIGINT
+"""The signal that Ctrl-C sends."""
 NICENESS = 10
 """POSIX niceness of background work: it yields to the editor, but still makes progress."""
 WINDOWS_ERRORS = {

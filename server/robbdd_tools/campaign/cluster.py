@@ -7,7 +7,7 @@ again.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -71,6 +71,7 @@ class Cluster:
     _known: frozenset[str] = field(init=False, default=frozenset())
     _looked: float = field(init=False, default=0.0)
     _waited: bool = field(init=False, default=False)
+    _work: Mapping[str, int] = field(init=False, default_factory=dict[str, int])
     _cancelled: threading.Event = field(init=False, default_factory=threading.Event)
 
     def __post_init__(self) -> None:
@@ -99,10 +100,18 @@ class Cluster:
             self._check([one for one in workers if one not in self._known])
             self._known = frozenset(workers)
             self._threads = sum(workers.values())
+            self._work = self._shares(workers)
             if not self._threads and not self._waited:
                 self.note(f"no worker is connected to {self.address}: waiting for one")
             self._waited = not self._threads
         return self._threads
+
+    def work(self) -> Mapping[str, int]:
+        """Return the number of executions that each worker has, by its address, as it was within the last seconds.
+
+        Any thread may call it.
+        """
+        return self._work
 
     def cancel(self) -> None:
         """Let ``results`` end. It may be called from any thread or signal handler."""
@@ -225,6 +234,14 @@ class Cluster:
         except (OSError, TimeoutError, ValueError) as error:
             reason = str(error) or "it does not answer"
             raise ClusterProblem(f"there is no scheduler at {self.address}: {reason}") from None
+
+    def _shares(self, workers: Iterable[str]) -> dict[str, int]:
+        sizes = {flight.future.key: len(flight.part.indices) for flight in self._flights}
+        try:
+            found: Mapping[str, Sequence[str]] = self._client.processing()
+        except (OSError, TimeoutError):
+            return {}
+        return {one: sum(sizes.get(key, 0) for key in found.get(one, ())) for one in workers}
 
     def _workers(self) -> dict[str, int]:
         try:

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from robbdd_tools.campaign.study_run import StudyProblem, StudyProgress, StudyRun
+from robbdd_tools.campaign.study_place import StudyProblem
+from robbdd_tools.campaign.study_progress import StudyProgress, Tally, WorkerState
+from robbdd_tools.campaign.study_run import StudyRun
 from robbdd_tools.protocol.messages import decode
 from robbdd_tools.run.parcels import Parcel, pack_prepared, pack_used
 from robbdd_tools.run.recording import OtherSimulator
@@ -55,13 +57,6 @@ class _OpenBatch:
     prepared: Parcel = NOTHING
     tasks: deque[tuple[int, ...]] = field(default_factory=deque[tuple[int, ...]])
     expected: int = 0
-
-    @property
-    def finished(self) -> int:
-        """The number of its finished executions."""
-        if self.run is None:
-            return self.batch.size
-        return sum(one.finished is not None for one in self.run.progress.scenarios)
 
     def send(self, size: int) -> tuple[int, ...]:
         """Return about ``size`` scenarios to be sent now."""
@@ -113,12 +108,15 @@ class ClusterStudyRun(StudyRun):
         self._opened: deque[_OpenBatch] = deque()
         self._waiting: deque[Batch] = deque()
         self._unsent = 0
-        self._counted = (0, 0)
 
     def cancel(self, reason: str) -> None:
         """End the study. Workers end the parts in flight within seconds."""
         super().cancel(reason)
         self._cluster.cancel()
+
+    def workers(self) -> list[WorkerState]:
+        """Return how many executions each worker has."""
+        return [WorkerState(one, f"{number:,} executions", None) for one, number in self._cluster.work().items()]
 
     def progress(self) -> Iterator[StudyProgress]:
         """Execute the open batches. Yield the progress after each part.
@@ -128,29 +126,31 @@ class ClusterStudyRun(StudyRun):
         done = self._removed_batches()
         self._waiting = deque(batch for batch in self.batches if batch.number not in done)
         self._unsent = sum(batch.size for batch in self._waiting)
-        self._counted = self._stored()
-        began, before = monotonic(), self._counted[0]
+        self.tally = Tally.of(self.store)
+        began, made = monotonic(), 0
         try:
             while (self._waiting or self._opened) and not self._cluster.is_cancelled and not self.ending:
                 self._fill()
+                if self._draining and not self._cluster.in_flight:
+                    break
                 for part, result in self._cluster.results():
                     self._take(part, result)
-                    now = self._counted[0] + sum(one.finished for one in self._opened)
-                    rate = (now - before) / max(monotonic() - began, 1e-9)
-                    yield StudyProgress(now, self.total, self._counted[1], rate)
+                    made += len(part.indices)
+                    yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9))
                 if not self.ending:
                     self._store_complete()
         except BaseException as error:
             self.ending = self.ending or self._reason or str(error) or "the study was interrupted"
             raise
         finally:
-            self.ending = self.ending or self._reason
+            is_open = bool(self._waiting or self._opened)
+            self.ending = self.ending or self._reason or (self._draining if is_open else "")
             for one in self._opened:
                 self._close(one)
 
     def _fill(self) -> None:
         """Send parts until enough are in flight."""
-        while self._cluster.in_flight < AHEAD * self._cluster.threads:
+        while not self._draining and self._cluster.in_flight < AHEAD * self._cluster.threads:
             current = next((one for one in self._opened if one.tasks), None) or self._next_batch()
             if current is None or current.run is None:
                 return
@@ -179,6 +179,8 @@ class ClusterStudyRun(StudyRun):
         place = self._place(batch.number)
         if self._is_finished(place):
             self._unsent -= batch.size
+            results = place.read_results()
+            self.tally.add_finished([] if results is None else results.scenarios)
             return _OpenBatch(batch)
         run = self._started(batch, place)
         try:
@@ -187,6 +189,7 @@ class ClusterStudyRun(StudyRun):
         except BaseException:
             run.close()
             raise
+        self.tally.add_finished(run.progress.scenarios)
         self._unsent -= batch.size - len(run.open_indices)
         return _OpenBatch(batch, run, used, prepared, deque(grouped(run.manifest, run.open_indices)))
 
@@ -201,6 +204,8 @@ class ClusterStudyRun(StudyRun):
         except OtherSimulator as error:
             self.ending = str(error)
             return
+        received = (opened.run.progress.scenarios[index] for index in part.indices)
+        self.tally.add_finished(received)
         if result.ending:
             self.ending = f"on {result.host}, {result.ending}"
             return
@@ -214,7 +219,6 @@ class ClusterStudyRun(StudyRun):
         while self._opened and self._opened[0].run is None:
             one = self._opened.popleft()
             self._store(one.batch, self._place(one.batch.number))
-            self._counted = self._stored()
 
     def _close(self, one: _OpenBatch) -> None:
         if one.run is None:

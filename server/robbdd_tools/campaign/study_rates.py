@@ -12,7 +12,7 @@ from robbdd_tools.run.report import value_words, variable_word
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.value_bins import Bins
-    from robbdd_tools.run.study_store import CombinationCount
+    from robbdd_tools.run.study_reader import CombinationCount
 
 
 def study_rates(counts: Iterable[CombinationCount]) -> list[list[LevelRate]]:

@@ -2,84 +2,36 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Iterator
+from dataclasses import replace
 from time import monotonic
 from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
-from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import load_bytes
-from robbdd_tools.base.locks import acquire, is_held
+from robbdd_tools.base.locks import acquire
 from robbdd_tools.campaign.study_batches import Batch, batches
+from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
+from robbdd_tools.campaign.study_place import BATCHES, StudyProblem
+from robbdd_tools.campaign.study_progress import StudyProgress, Tally, WorkerState
 from robbdd_tools.protocol.messages import ScenarioFinished
-from robbdd_tools.run.prepare import FEATURES
-from robbdd_tools.run.store import LOCK, NoSuchRun, begin_in, project_root, run_in, shown_path
+from robbdd_tools.run.report import values_words
+from robbdd_tools.run.store import LOCK, NoSuchRun, begin_in, run_in
 from robbdd_tools.run.stored_results import FINISHED
-from robbdd_tools.run.study_store import NAME, StudyStore
+from robbdd_tools.run.study_store import StudyStore
 from robbdd_tools.workbench.resuming import resume
 from robbdd_tools.workbench.run import Run
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from robbdd_tools.campaign.stopping import Ruling
     from robbdd_tools.campaign.study_file import Study
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import StoredRun
 
-FOLDER = Path(".robbdd") / "studies"
-BATCHES = "batches"
-"""Folder of the batch that is executed."""
 AGAIN = "start it again with --restart, which removes its results"
-
-
-class StudyProblem(RobbddError):
-    """A study cannot be executed or continued; the message gives the reason."""
-
-
-@dataclass(frozen=True, slots=True)
-class StudyProgress:
-    """The progress of a study.
-
-    - ``finished``, ``total``: executions.
-    - ``holding``: the finished executions in which all clauses hold.
-    - ``rate``: executions per s of wall time since the study was begun or resumed; 0 if unknown.
-    """
-
-    finished: int
-    total: int
-    holding: int
-    rate: float = 0.0
-
-    @property
-    def left(self) -> float | None:
-        """The estimated wall time of the open executions in s; ``None`` if unknown."""
-        return (self.total - self.finished) / self.rate if self.rate else None
-
-
-def study_folder(path: Path, store: Path | None = None) -> Path:
-    """Return the folder of a study's results: ``.robbdd/studies/`` in its project, or ``store``."""
-    root = project_root(path) / FOLDER if store is None else store
-    return root / shown_path(path)
-
-
-def has_results(folder: Path) -> bool:
-    """Return whether a study has been begun."""
-    return (folder / NAME).is_file()
-
-
-def remove_results(folder: Path) -> None:
-    """Remove the results of a study. Raises ``StudyProblem`` while it is executed, and ``OSError``."""
-    if not folder.exists():
-        return
-    if is_held(folder / LOCK):
-        raise StudyProblem("another process executes this study: wait for it, or end it first")
-    for end in ("", "-wal", "-shm"):
-        (folder / f"{NAME}{end}").unlink(missing_ok=True)
-    shutil.rmtree(folder / BATCHES, ignore_errors=True)
 
 
 class StudyRun:
@@ -95,8 +47,11 @@ class StudyRun:
         self._policy = replace(policy, timeout=study.timeout)
         self._run: Run | None = None
         self._reason = ""
+        self._draining = ""
         self.ending = ""
+        self.tally = Tally()
         self.batches = batches(study)
+        self.total = sum(batch.size for batch in self.batches)
         folder.mkdir(parents=True, exist_ok=True)
         lock = acquire(folder / LOCK)
         if lock is None:
@@ -124,11 +79,6 @@ class StudyRun:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    @property
-    def total(self) -> int:
-        """The number of executions of the whole study."""
-        return sum(batch.size for batch in self.batches)
-
     def ruling(self) -> Ruling | None:
         """Return the decision of the study's rule from all stored executions; ``None`` for no decision or no rule."""
         finished, holding = self._stored()
@@ -140,27 +90,45 @@ class StudyRun:
         if self._run is not None:
             self._run.cancel(reason)
 
+    def drain(self, reason: str) -> None:
+        """Finish the executions in progress, and begin no other. Any thread or signal handler may call it."""
+        self._draining = self._draining or reason
+        if self._run is not None:
+            self._run.drain(reason)
+
+    def workers(self) -> list[WorkerState]:
+        """Return what each worker does now. Any thread may call it."""
+        run = self._run
+        if run is None:
+            return []
+        specs = run.manifest.scenarios
+        found = ((one, specs[one.index]) for one in run.work)
+        return [
+            WorkerState(f"process {one.number}", f"{spec.name}  {values_words(spec)}", one.seconds)
+            for one, spec in found
+        ]
+
     def progress(self) -> Iterator[StudyProgress]:
         """Execute the open batches. Yield the progress after each execution.
 
         Raises ``StudyProblem``, ``OSError``, ``UserCodeRefused`` and ``NothingSelected``.
         """
         done = self._removed_batches()
-        finished, holding = self._stored()
-        began, before = monotonic(), finished
+        self.tally = Tally.of(self.store)
+        began, made = monotonic(), 0
         for batch in self.batches:
-            if self._decided(batch):
-                return
             if batch.number in done:
                 continue
-            for count in self._execute(batch):
-                now = finished + count
-                elapsed = monotonic() - began
-                yield StudyProgress(now, self.total, holding, (now - before) / elapsed if elapsed > 0 else 0.0)
+            if self._decided(batch):
+                return
+            self.ending = self._reason or self._draining
             if self.ending:
                 return
-            finished, holding = self._stored()
-            yield StudyProgress(finished, self.total, holding, (finished - before) / max(monotonic() - began, 1e-9))
+            for _ in self._execute(batch):
+                made += 1
+                yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9))
+            if self.ending:
+                return
 
     def _removed_batches(self) -> frozenset[int]:
         """Return the numbers of the stored batches, and remove what is left of their folders."""
@@ -184,25 +152,36 @@ class StudyRun:
         total, holding = totals if counted else (0, 0)
         return rule.ruling(holding, total) is not None
 
-    def _execute(self, batch: Batch) -> Iterator[int]:
-        """Execute a batch and store its results. Yield the number of its finished executions after each of them."""
+    def _execute(self, batch: Batch) -> Iterator[None]:
+        """Execute a batch and store its results. Yield after each execution."""
         place = self._place(batch.number)
-        if not self._is_finished(place):
+        if self._is_finished(place):
+            results = place.read_results()
+            self.tally.add_finished([] if results is None else results.scenarios)
+        else:
             with self._started(batch, place) as run:
-                self._run = run
-                if self._reason:
-                    run.cancel(self._reason)
                 self._check_files(batch, place)
-                count = sum(one.finished is not None for one in run.progress.scenarios)
-                for message in run.messages():
-                    if isinstance(message, ScenarioFinished):
-                        count += 1
-                        yield count
-                self._run = None
-                self.ending = run.problem or self._reason or run.ending
-                if self.ending:
-                    return
+                self.tally.add_finished(run.progress.scenarios)
+                yield from self._follow(run)
+            if self.ending:
+                return
         self._store(batch, place)
+
+    def _follow(self, run: Run) -> Iterator[None]:
+        """Execute the open executions of a run. Yield after each of them."""
+        self._run = run
+        # A request to end may have arrived before there was a run.
+        if self._draining:
+            run.drain(self._draining)
+        if self._reason:
+            run.cancel(self._reason)
+        for message in run.messages():
+            if isinstance(message, ScenarioFinished):
+                self.tally.add(run.progress.scenarios[message.index])
+                yield
+        self._run = None
+        # A batch that is complete in spite of a request to end is stored first.
+        self.ending = run.problem or ("" if run.progress.complete else self._reason or self._draining or run.ending)
 
     def _store(self, batch: Batch, place: StoredRun) -> None:
         """Move the results of a finished batch to the study's store."""
@@ -250,25 +229,18 @@ class StudyRun:
             finished, _ = self._stored()
             what = f"has {finished} of {self.total} executions"
             raise StudyProblem(f"the study {what}: continue it with `robbdd study resume`, or {AGAIN}")
-        elif digest != self._study.digest:
-            raise StudyProblem(f"the study or one of its models was changed since it began: undo that, or {AGAIN}")
-        elif self.store.fact("version") != __version__:
-            version = self.store.fact("version")
-            raise StudyProblem(f"RobBDD {version} began the study, and this is {__version__}: {AGAIN}")
+        elif reason := changed_study(self._study, self.store):
+            raise StudyProblem(f"{reason}, or {AGAIN}")
 
     def _check_files(self, batch: Batch, place: StoredRun) -> None:
         """Refuse a batch that uses other versions of users' files than the earlier batches of its cell."""
-        steps = sorted((place.folder / FEATURES / "steps").glob("model*_steps.py"))
-        files = dict(place.record().files) | {path.name: hashlib.sha256(load_bytes(path)).hexdigest() for path in steps}
+        files = used_files(place)
         name = f"files {batch.cell.words}"
         known = self.store.fact(name)
         if known is None:
             self.store.note({name: json.dumps(files, sort_keys=True)})
-        elif json.loads(known) != files:
-            before: dict[str, str] = json.loads(known)
-            differing = sorted(one for one in {*before, *files} if before.get(one) != files.get(one))
-            shown = ", ".join(Path(one).name for one in differing)
-            raise StudyProblem(f"{shown} changed since the study began: undo that, or {AGAIN}")
+        elif reason := changed_files(json.loads(known), files):
+            raise StudyProblem(f"{reason}, or {AGAIN}")
 
     def _check_simulator(self, place: StoredRun) -> None:
         simulator, known = place.status().simulator, self.store.fact("simulator")
@@ -276,22 +248,3 @@ class StudyRun:
             self.store.note({"simulator": simulator})
         elif known != simulator:
             raise StudyProblem(f"the study began with the simulator {known}, and this is {simulator}: {AGAIN}")
-
-
-def open_results(folder: Path) -> StudyStore:
-    """Open the results of a study. Raises ``StudyProblem`` if there are none, and ``DatabaseProblem``."""
-    if not (folder / NAME).is_file():
-        raise StudyProblem("the study has no results: `robbdd study run` begins it")
-    return StudyStore(folder)
-
-
-def open_batch(folder: Path) -> tuple[int, bool]:
-    """Return the number of finished executions of the batch in progress, and whether a process executes the study."""
-    stored: Iterable[Path] = (folder / BATCHES).iterdir() if (folder / BATCHES).is_dir() else ()
-    finished = 0
-    for path in stored:
-        try:
-            finished += run_in(path, kept=False).status().finished
-        except NoSuchRun:
-            continue
-    return finished, is_held(folder / LOCK)

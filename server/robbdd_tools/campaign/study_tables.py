@@ -13,16 +13,16 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file, replacing
-from robbdd_tools.run.study_store import COLUMNS
+from robbdd_tools.run.study_reader import COLUMNS
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.run.study_reader import StudyReader
 
 PARQUET, DUCKDB = ".parquet", ".duckdb"
 TABLE = "clauses"
 """Name of the table of rows in a database; the table ``facts`` has the versions."""
 _TYPES = {
-    **dict.fromkeys(("variation", "repetition", "seed"), "BIGINT"),
+    **dict.fromkeys(("number", "variation", "repetition", "seed"), "BIGINT"),
     **dict.fromkeys(("duration", "margin", "at"), "DOUBLE"),
 }
 """Types of columns that are not text."""
@@ -32,7 +32,7 @@ class TableProblem(RobbddError):
     """A table cannot be written; the message gives the reason."""
 
 
-def write_table(store: StudyStore, output: Path) -> None:
+def write_table(store: StudyReader, output: Path) -> None:
     """Write one row for each clause of each execution; the suffix of ``output`` chooses the format, CSV for others.
 
     Equal studies have equal CSV and Parquet files. Raises ``TableProblem``, ``DatabaseProblem`` and ``OSError``.
@@ -65,7 +65,7 @@ def write_table(store: StudyStore, output: Path) -> None:
         replace_file(output, load_bytes(made, RESULT_SIZE))
 
 
-def _columns(store: StudyStore) -> Mapping[str, str]:
+def _columns(store: StudyReader) -> Mapping[str, str]:
     """Return the columns with their types. Levels are numbers if all values of a factor are."""
     levels: dict[str, list[object]] = {}
     for count in store.counts():
@@ -84,7 +84,7 @@ def _type(values: Iterable[object]) -> str:
     return "DOUBLE" if kinds <= {int, float} else "VARCHAR"
 
 
-def _write_csv(store: StudyStore, columns: Mapping[str, str], file: TextIO) -> None:
+def _write_csv(store: StudyReader, columns: Mapping[str, str], file: TextIO) -> None:
     writer = csv.DictWriter(file, columns, lineterminator="\n")
     writer.writeheader()
     writer.writerows(store.rows())

@@ -7,39 +7,37 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.processes import end_requests
+from robbdd_tools.base.processes import CTRL_C, end_requests
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
 from robbdd_tools.campaign.study_file import Study, load_study
-from robbdd_tools.campaign.study_rates import study_rates
-from robbdd_tools.campaign.study_run import (
+from robbdd_tools.campaign.study_place import (
     StudyProblem,
-    StudyRun,
-    open_batch,
+    is_executed,
     open_results,
     remove_results,
     study_folder,
+    tally_so_far,
 )
+from robbdd_tools.campaign.study_rates import study_rates
+from robbdd_tools.campaign.study_run import StudyRun
 from robbdd_tools.campaign.study_tables import write_table
 from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.rate_lines import level_line, level_lines
+from robbdd_tools.commands.study_display import StudyDisplay
 from robbdd_tools.commands.study_standing import standing
 from robbdd_tools.run.report import margin
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import store_beside
-from robbdd_tools.workbench.time_estimate import TimeEstimate, estimate
+from robbdd_tools.workbench.time_estimate import estimate
 
 if TYPE_CHECKING:
-    from robbdd_tools.campaign.study_run import StudyProgress
-    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.run.study_reader import StudyReader
 
-PAUSE = 10.0
-"""Seconds between two lines of progress."""
 RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
 """Exit codes of a required pass rate."""
 INTERRUPTED = "the study was interrupted"
@@ -68,25 +66,26 @@ def run_study(options: StudyOptions) -> int:
     Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end. With a
     required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if the executions do not tell.
     """
-    return _explained(lambda: _run_study(options))
+    return explained(lambda: _run_study(options))
 
 
 def print_status(path: Path, store: Path | None) -> int:
     """Print how many executions are finished, and whether a process executes the study."""
-    return _explained(lambda: _print_status(study_folder(path, store)))
+    return explained(lambda: _print_status(study_folder(path, store)))
 
 
 def print_rates(path: Path, store: Path | None) -> int:
     """Print the pass rates of the levels of each factor, then those of each clause."""
-    return _explained(lambda: _print_rates(study_folder(path, store)))
+    return explained(lambda: _print_rates(study_folder(path, store)))
 
 
 def export_rows(path: Path, output: Path, store: Path | None) -> int:
     """Write one row for each clause of each execution as CSV, Parquet or a DuckDB database."""
-    return _explained(lambda: _export_rows(study_folder(path, store), output))
+    return explained(lambda: _export_rows(study_folder(path, store), output))
 
 
-def _explained(work: Callable[[], int]) -> int:
+def explained(work: Callable[[], int]) -> int:
+    """Return the exit code of some work. If it fails, print the reason."""
     try:
         return work()
     except RobbddError as error:
@@ -147,32 +146,29 @@ def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:
 
 
 def _follow(run: StudyRun) -> int:
-    """Execute the study and print its progress. Return the number of the signal that ended it, or 0."""
+    """Execute the study and print its progress. Return the number of the signal that ended it, or 0.
+
+    The first Ctrl-C lets executions in progress finish; the second one, and any other signal, does not.
+    """
     ended_by = 0
+    display = StudyDisplay(run)
 
-    def cancel(number: int) -> None:
+    def end(number: int) -> None:
         nonlocal ended_by
-        ended_by = number
-        run.cancel(INTERRUPTED)
+        is_first, ended_by = not ended_by, number
+        if is_first and number == CTRL_C:
+            run.drain(INTERRUPTED)
+            display.note("finishing the executions in progress; Ctrl-C again ends them now")
+        else:
+            run.cancel(INTERRUPTED)
 
-    shown = monotonic()
-    with end_requests(cancel):
+    with display, end_requests(end):
         for progress in run.progress():
-            if monotonic() - shown >= PAUSE:
-                shown = monotonic()
-                print_note("; ".join((_progress_words(progress), *standing(run.store))))
+            display.update(progress)
     return ended_by
 
 
-def _progress_words(progress: StudyProgress) -> str:
-    counted = f"{progress.finished:,} of {progress.total:,} executions"
-    if progress.left is None:
-        return counted
-    left = TimeEstimate(progress.total - progress.finished, progress.left, 0).duration
-    return f"{counted}, {progress.rate:.1f} per second, about {left} left"
-
-
-def _print_results(store: StudyStore) -> None:
+def _print_results(store: StudyReader) -> None:
     counts = store.counts()
     if not counts:
         return
@@ -192,13 +188,11 @@ def _print_results(store: StudyStore) -> None:
 
 def _print_status(folder: Path) -> int:
     with open_results(folder) as store:
-        counted = list(store.outcomes())
-        open_ones, is_live = open_batch(folder)
-        finished = sum(total for _, total, _ in counted) + open_ones
-        state = "in progress" if is_live else "not in progress"
+        tally = tally_so_far(folder, store)
+        state = "in progress" if is_executed(folder) else "not in progress"
         name, total = store.fact("name"), int(store.fact("total") or 0)
-        print_line(f"{name}: {finished:,} of {total:,} executions, {state}")
-        for line in standing(store):
+        print_line(f"{name}: {tally.finished:,} of {total:,} executions, {state}")
+        for line in standing(tally):
             print_line(line)
     return OK
 

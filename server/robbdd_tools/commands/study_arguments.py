@@ -38,6 +38,7 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         _allow_store(one)
         one.set_defaults(command=command)
+    replay = _add_replay(commands.add_parser("replay", help="execute executions of a study again, with traces"))
     outcomes = commands.add_parser("outcomes", help="count executions by factors and by their first violated clause")
     text = "factors or variables, such as robot,scale (default: all with several levels)"
     outcomes.add_argument("--by", metavar="NAME,…", type=_names, default=(), help=text)
@@ -52,7 +53,26 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("--plot", metavar="FILE", type=Path, help=text)
         _allow_store(one)
     _add_plan(commands.add_parser("plan", help="print how many executions a wanted interval or comparison needs"))
-    return run, resume
+    return run, resume, replay
+
+
+def _add_replay(replay: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    replay.add_argument("path", metavar="FILE.study", type=Path)
+    text = "numbers of executions, as in the export (default: all that the options choose)"
+    replay.add_argument("numbers", metavar="NUMBER", type=positive, nargs="*", help=text)
+    replay.add_argument("--failures", action="store_true", help="executions in which a clause does not hold")
+    text = "executions in which the clause of this name does not hold"
+    replay.add_argument("--clause", metavar="NAME", default="", help=text)
+    replay.add_argument("--first", metavar="N", type=positive, help="at most N of them, in the order of the study")
+    text = "agent processes at a time (default: as many as there are cores)"
+    replay.add_argument("--jobs", metavar="N", type=positive, help=text)
+    text = "execute with the current models and files, even if they have changed since the study"
+    replay.add_argument("--force", action="store_true", help=text)
+    text = "connect to endpoints on this host; may be repeated (always: endpoint-hosts in your settings)"
+    replay.add_argument("--allow-host", metavar="HOST", action="append", help=text)
+    _allow_store(replay)
+    replay.set_defaults(command=_replay)
+    return replay
 
 
 def _add_plan(plan: argparse.ArgumentParser) -> None:
@@ -93,6 +113,17 @@ def _run(options: argparse.Namespace) -> int:
     with output_may_be_lost():
         chosen = (options.path, options.store, options.jobs, options.resumed, restart)
         return run_study(StudyOptions(*chosen, options.scheduler, options.send))
+
+
+def _replay(options: argparse.Namespace) -> int:
+    from robbdd_tools.campaign.study_replay import Chosen
+    from robbdd_tools.commands.replay_executions import ReplayOptions, replay_study
+    from robbdd_tools.commands.study import explained
+
+    chosen = Chosen(options.numbers, options.failures, options.clause, options.first)
+    wanted = ReplayOptions(options.path, chosen, options.store, options.jobs, options.force)
+    with output_may_be_lost():
+        return explained(lambda: replay_study(wanted))
 
 
 def _status(options: argparse.Namespace) -> int:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.printable import printable
 from robbdd_tools.campaign.study_outcomes import margins, outcome_table
+from robbdd_tools.campaign.study_place import open_results, study_folder
 from robbdd_tools.campaign.study_plots import FORMATS, draw_margins, draw_outcomes
-from robbdd_tools.campaign.study_run import open_results, study_folder
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.run.report import margin

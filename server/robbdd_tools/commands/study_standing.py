@@ -5,22 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.campaign.study_rates import study_rates
+from robbdd_tools.campaign.factor_rates import LevelRate
 from robbdd_tools.commands.rate_lines import level_line
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.workbench.time_estimate import TimeEstimate
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.campaign.study_progress import StudyProgress, Tally
 
 
-def standing(store: StudyStore) -> Iterator[str]:
-    """Yield the lines about the stored batches; nothing before the first one. Raises ``DatabaseProblem``."""
-    counts = store.counts()
-    if not counts:
+def standing(tally: Tally) -> Iterator[str]:
+    """Yield the lines about the verdicts so far; nothing before the first one."""
+    if not tally.finished:
         return
-    (overall,), *_ = study_rates(counts)
-    yield level_line(overall)
-    failing = {one: one.violated + one.unknown for one in store.clauses()}
-    worst = max(failing, key=lambda one: failing[one] / (one.holds + failing[one]))
-    if failing[worst]:
-        total = worst.holds + failing[worst]
-        yield f"worst clause: {worst.name}, {worst.violated} violated and {worst.unknown} unknown of {total}"
+    yield level_line(LevelRate("all executions", tally.holding, tally.finished))
+    worst = tally.worst()
+    if worst is not None:
+        name, counts = worst
+        failing = f"{counts[Outcome.VIOLATED]} violated and {counts[Outcome.UNKNOWN]} unknown"
+        yield f"worst clause: {name}, {failing} of {counts.total()}"
+
+
+def progress_words(progress: StudyProgress) -> str:
+    """Return the number of finished executions, the rate, and the time that is left."""
+    counted = f"{progress.finished:,} of {progress.total:,} executions"
+    if progress.left is None:
+        return counted
+    left = TimeEstimate(progress.total - progress.finished, progress.left, 0).duration
+    return f"{counted}, {progress.rate:.1f} per second, about {left} left"

@@ -20,7 +20,7 @@ SHOW_RESULTS = "robbdd.showStudyResults"
 
 def study_lenses(ls: RobbddServer, snapshot: Snapshot, uri: str) -> list[types.CodeLens]:
     """Return the lenses at the name of a study: to begin it or, if it has been begun, to continue and to show it."""
-    from robbdd_tools.campaign.study_run import has_results, study_folder
+    from robbdd_tools.campaign.study_place import has_results, study_folder
 
     path = uri_to_path(uri)
     studies = outline(snapshot, uri)

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
+from typing import NamedTuple
 
 from robbdd_tools.monitor.fault import Fault
+from robbdd_tools.protocol.messages import (
+    ClauseJudged,
+    ClauseStarted,
+    MarginRanges,
+    RunFinished,
+    RunMessage,
+    ScenarioFinished,
+)
 from robbdd_tools.protocol.run_folder import STARTUP
 from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.launch import Agent
+from robbdd_tools.run.message_check import misfit
 
 GRACE = 0.5
 """Seconds that a process has after a deadline to dump its stack before it is killed."""
@@ -22,20 +32,31 @@ def grace(limit: float) -> float:
     return min(GRACE, limit / 10)
 
 
+class Busy(NamedTuple):
+    """The number of a process, the number of the scenario that it executes, and for how many s it has done so."""
+
+    number: int
+    index: int
+    seconds: float
+
+
 @dataclass(slots=True, eq=False)
 class AgentWorker:
     """An agent process, its current scenario, and the deadline for starting or finishing that scenario.
 
-    ``index`` is the number of the current scenario. ``following`` are the numbers of the scenarios that the agent
-    executes next because they share the execution of the current one.
+    ``number`` counts the processes of a run. ``index`` is the number of the current scenario, and ``since`` the clock
+    time in s at which it began. ``following`` are the numbers of the scenarios that the agent executes next because
+    they share the execution of the current one.
     """
 
     agent: Agent
     debugged: bool = False
+    number: int = 0
     index: int | None = None
     following: deque[int] = field(default_factory=deque[int])
     deadline: float = inf
     started: bool = False
+    since: float = 0.0
     failed: bool = False
     timed_out: bool = False
     complaint: str = "the agent cannot work"
@@ -62,6 +83,18 @@ class AgentWorker:
         """Kill the agent because it missed its deadline."""
         self.timed_out, self.deadline = True, inf
         self.agent.kill()
+
+    def misfit(self, message: RunMessage, specs: Sequence[ScenarioSpec]) -> str:
+        """Return the reason why the agent cannot have sent a message; empty if it can have sent it."""
+        match message:
+            case ClauseJudged(line=line) if line in self.judged:
+                return f"ignored another verdict on the clause of line {line}"
+            case ClauseStarted() | ClauseJudged() | MarginRanges() | ScenarioFinished() if not self.started:
+                return f"ignored {type(message).__name__} before the beginning of a scenario"
+            case RunFinished() if self.started:
+                return "ignored RunFinished within a scenario"
+            case _:
+                return misfit(message, specs, self.index)
 
     def fault(self, limit: float, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
         """Return the error in the user's code that ended the agent process, if any (see ``Crash.fault``).

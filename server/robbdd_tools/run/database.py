@@ -173,8 +173,10 @@ def open_database(path: Path, *, durable: bool = True, migrations: Migrations | 
         return connection
 
 
-def read_database(path: Path) -> sqlite3.Connection | None:
+def read_database(path: Path, migrations: Migrations | None = None) -> sqlite3.Connection | None:
     """Open a database for reading; return ``None`` if it is missing or empty. Raises ``DatabaseProblem``.
+
+    ``migrations`` define the schema; by default, they are those of runs.
 
     If SQLite cannot open the database in place, because its folder is read-only and it has a log, it is copied into
     memory.
@@ -183,11 +185,11 @@ def read_database(path: Path) -> sqlite3.Connection | None:
         return None
     with explained(path):
         try:
-            return _read(path)
+            return _read(path, migrations)
         except sqlite3.OperationalError as error:
             if _code(error) not in _UNWRITABLE:
                 raise
-        return _copy_in_memory(path)
+        return _copy_in_memory(path, migrations)
 
 
 def move_aside(path: Path) -> Path:
@@ -238,17 +240,17 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
     return connection
 
 
-def _read(path: Path) -> sqlite3.Connection | None:
+def _read(path: Path, migrations: Migrations | None) -> sqlite3.Connection | None:
     connection = _connect(path, "ro")
     try:
-        version = _version(connection, path)
+        version = _version(connection, path, migrations)
         if version == 0:
             connection.close()
             return None
-        if version < len(MIGRATIONS):
+        if version < len(MIGRATIONS if migrations is None else migrations):
             # Readers migrate a copy of an older schema; the next run migrates the file.
             memory = _in_memory(connection)
-            _migrate(memory, path)
+            _migrate(memory, path, migrations)
             return memory
         return connection
     except BaseException:
@@ -256,7 +258,7 @@ def _read(path: Path) -> sqlite3.Connection | None:
         raise
 
 
-def _copy_in_memory(path: Path) -> sqlite3.Connection | None:
+def _copy_in_memory(path: Path, migrations: Migrations | None) -> sqlite3.Connection | None:
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         copy = Path(folder) / NAME
         try:
@@ -266,7 +268,7 @@ def _copy_in_memory(path: Path) -> sqlite3.Connection | None:
                 replace_file(copy.with_name(copy.name + LOG), load_bytes(log, RESULT_SIZE))
         except OSError as error:
             raise DatabaseProblem(path, f"cannot be read: {error.strerror or error}") from error
-        connection = _read(copy)
+        connection = _read(copy, migrations)
         return None if connection is None else _in_memory(connection)
 
 

@@ -35,9 +35,8 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.protocol.pauses import DebugOrder, Paused, SceneWritten, encode_order
 from robbdd_tools.protocol.run_folder import STARTUP
 from robbdd_tools.protocol.specs import Manifest
-from robbdd_tools.run.agent_worker import AgentWorker, grace
+from robbdd_tools.run.agent_worker import AgentWorker, Busy, grace
 from robbdd_tools.run.launch import Agent, stop
-from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.message_order import OrderedMessages
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.tasks import earlier_than, grouped
@@ -94,6 +93,7 @@ class Scheduler:
         self._wasted = 0
         self._greeted = False
         self._cancelled = False
+        self._draining = False
         self._stopped = False
         self._shared_faults: set[str] = set()
         self._shared_outputs = 0
@@ -103,6 +103,18 @@ class Scheduler:
     def busy(self) -> dict[int, int]:
         """The number of the current scenario of each busy process, by the number of the process."""
         return {w.agent.pid: w.index for w in list(self._workers) if w.index is not None and w.started}
+
+    @property
+    def work(self) -> list[Busy]:
+        """The busy processes in the order of their numbers."""
+        now = monotonic()
+        busy = (one for one in list(self._workers) if one.started)
+        return sorted(Busy(w.number, w.index, now - w.since) for w in busy if w.index is not None)
+
+    def drain(self) -> None:
+        """Begin no further execution. Those in progress are finished. Any thread or signal handler may call it."""
+        self._draining = True
+        self._events.put(None)
 
     def cancel(self) -> None:
         """End the run within half a second; finished results are kept."""
@@ -147,12 +159,17 @@ class Scheduler:
             self.close()
 
     def _until_done(self) -> Iterator[RunMessage]:
+        left_out = False
         while not (self._cancelled or self._gave_up) and self._open:
+            if self._draining and self._waiting:
+                self._waiting.clear()
+                left_out = True
+                continue
             self._employ()
             event = self._next_event()
             if event is not None and event[0] in self._workers:
                 yield from self._take(*event)
-        if self._cancelled and self._open:
+        if (self._cancelled and self._open) or (left_out and not self.ending):
             self.ending = CANCELLED
 
     @property
@@ -180,7 +197,7 @@ class Scheduler:
             debug=policy.debug,
             pausing=policy.pausing,
         )
-        worker = AgentWorker(agent, debugged=policy.is_debugged)
+        worker = AgentWorker(agent, debugged=policy.is_debugged, number=number)
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
@@ -209,7 +226,7 @@ class Scheduler:
 
         A message that the worker cannot have sent is logged and ignored.
         """
-        problem = "" if message is None else self._misfit(worker, message)
+        problem = "" if message is None else worker.misfit(message, self._specs)
         if problem:
             message = LogLine("warning", problem)
         match message:
@@ -229,7 +246,8 @@ class Scheduler:
             case ScenarioStarted():
                 self._wasted = 0
                 if not worker.started:
-                    worker.started, worker.deadline = True, monotonic() + self._limit + grace(self._limit)
+                    worker.started, worker.since = True, monotonic()
+                    worker.deadline = worker.since + self._limit + grace(self._limit)
                 yield from self._pass_on(worker, message)
             case UserCodeFailed(None, fault):
                 # Each process loads the code that all scenarios share.
@@ -254,18 +272,6 @@ class Scheduler:
                 yield from self._pass_on(worker, message)
             case ScenarioFinished():
                 yield from self._finish(worker, message)
-
-    def _misfit(self, worker: AgentWorker, message: RunMessage) -> str:
-        """Return the reason why a worker cannot have sent a message; empty if it can have sent it."""
-        match message:
-            case ClauseJudged(line=line) if line in worker.judged:
-                return f"ignored another verdict on the clause of line {line}"
-            case ClauseStarted() | ClauseJudged() | MarginRanges() | ScenarioFinished() if not worker.started:
-                return f"ignored {type(message).__name__} before the beginning of a scenario"
-            case RunFinished() if worker.started:
-                return "ignored RunFinished within a scenario"
-            case _:
-                return misfit(message, self._specs, worker.index)
 
     @property
     def _limit(self) -> float:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.protocol.pauses import DebugOrder
     from robbdd_tools.protocol.specs import Manifest
+    from robbdd_tools.run.agent_worker import Busy
     from robbdd_tools.run.store import StoredRun
     from robbdd_tools.workbench.plan import Plan
 
@@ -65,6 +66,7 @@ class Run(Recorded):
         """The numbers of the scenarios that were open when the run was begun or resumed."""
         self._on_close = on_close
         self._reason = ""
+        self._draining = ""
         self._thread: threading.Thread | None = None
         self._closed = False
         self.progress = results
@@ -115,6 +117,16 @@ class Run(Recorded):
         self._reason = self._reason or reason
         self._scheduler.cancel()
 
+    def drain(self, reason: str) -> None:
+        """Finish the executions in progress, and begin no other. Any thread or signal handler may call it."""
+        self._draining = self._draining or reason
+        self._scheduler.drain()
+
+    @property
+    def work(self) -> list[Busy]:
+        """The busy agent processes."""
+        return self._scheduler.work
+
     def order(self, order: DebugOrder) -> None:
         """Send an order of a debugger to the run's processes. This may be called from any thread."""
         self._scheduler.order(order)
@@ -129,7 +141,8 @@ class Run(Recorded):
                 if self._recording.is_new(message):
                     self.progress.apply(message)
                     yield message
-            self.ending = self._reason or self._scheduler.ending
+            ending = self._scheduler.ending
+            self.ending = self._reason or (self._draining if ending == CANCELLED else "") or ending
         except GeneratorExit:
             self.ending = self._reason = self._reason or CANCELLED
             raise
@@ -234,7 +247,7 @@ class Run(Recorded):
     def _conclude(self) -> None:
         """Record the end of the run. The stored results replace ``progress``."""
         try:
-            self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
+            self.progress = self._recording.end(self.ending, interrupted=bool(self._reason or self._draining))
         except OSError as error:
             self.problem = self.problem or failure_reason(error)
             # An execution that could not be stored is executed again when the run is resumed.

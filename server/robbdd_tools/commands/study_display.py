@@ -1,0 +1,100 @@
+"""Show the progress of a study: drawn on a terminal, as a line from time to time elsewhere."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from time import monotonic
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from rich.console import Group
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from robbdd_tools.campaign.study_progress import StudyProgress
+from robbdd_tools.commands.output import print_note
+from robbdd_tools.commands.study_standing import progress_words, standing
+from robbdd_tools.commands.terminal import plain, terminal
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from robbdd_tools.campaign.study_progress import WorkerState
+    from robbdd_tools.campaign.study_run import StudyRun
+
+PAUSE = 10.0
+"""Seconds between two lines of progress."""
+REDRAWN = 2
+"""How often per second the progress is drawn again."""
+MOST_WORKERS = 16
+"""Maximum number of workers that are listed."""
+BAR = 40
+"""Columns of the bar."""
+
+
+class StudyDisplay:
+    """Shows the progress of a study on standard error. Use it as a context manager.
+
+    On a terminal whose cursor can be moved, all of it is drawn in place; elsewhere, a line is printed every ``PAUSE``
+    seconds, without the workers.
+    """
+
+    def __init__(self, run: StudyRun) -> None:
+        self._run = run
+        self._latest: StudyProgress | None = None
+        self._note = ""
+        self._printed = monotonic()
+        console = terminal(stderr=True)
+        self._live: Live | None = None
+        if console.is_terminal and not console.is_dumb_terminal:
+            self._live = Live(
+                console=console, get_renderable=self.drawn, refresh_per_second=REDRAWN, transient=True,
+                redirect_stdout=False,
+            )  # fmt: skip
+
+    def __enter__(self) -> Self:
+        if self._live is not None:
+            self._live.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None):
+        if self._live is not None:
+            self._live.stop()
+
+    def update(self, progress: StudyProgress) -> None:
+        """Take the latest progress."""
+        self._latest = progress
+        if self._live is None and monotonic() - self._printed >= PAUSE:
+            self._printed = monotonic()
+            print_note("; ".join((progress_words(progress), *standing(progress.tally))))
+
+    def note(self, text: str) -> None:
+        """Show a remark on how the study ends. A signal handler may call it."""
+        self._note = text
+        if self._live is None:
+            # The handler may interrupt ``print`` itself.
+            with suppress(OSError, ValueError):
+                os.write(sys.stderr.fileno(), f"robbdd: {text}\n".encode())
+
+    def drawn(self) -> RenderableType:
+        """Return what is drawn on a terminal: the progress, the verdicts so far, and the work of each worker."""
+        progress = self._latest or StudyProgress(self._run.total, self._run.tally)
+        bar = Table.grid(padding=(0, 1))
+        bar.add_row(ProgressBar(progress.total, progress.finished, width=BAR), Text(progress_words(progress)))
+        lines: list[RenderableType] = [bar, *map(plain, standing(progress.tally))]
+        workers = self._run.workers()
+        lines += map(_worker_line, workers[:MOST_WORKERS])
+        if len(workers) > MOST_WORKERS:
+            lines.append(Text(f"  … and {len(workers) - MOST_WORKERS} more workers"))
+        return Group(*lines, *([plain(self._note, "yellow")] if self._note else []))
+
+
+def _worker_line(worker: WorkerState) -> Text:
+    since = "" if worker.seconds is None else f"  {worker.seconds:.0f} s"
+    line = plain(f"  {worker.name}: {worker.work}{since}")
+    line.no_wrap, line.overflow = True, "ellipsis"
+    return line
