@@ -93,6 +93,7 @@ const predicates = phrases(
   "does not touch",
   "presses",
   "with less than",
+  "does not collide with",
   "does not collide",
   "stays within",
   "keeps its joints",

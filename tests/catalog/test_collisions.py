@@ -70,3 +70,56 @@ def test_a_target_of_which_a_part_can_be_pushed_has_the_smaller_share_as_its_mar
     assert (found.robustness, found.unit) == (pytest.approx(0.2), "")
     hit = replace(pushed, forces={("arm", "tray"): np.array([0.0, 126.0, 0.0])})
     assert judged("does-not-collide", hit, agent="arm", target="both_ws").robustness == pytest.approx(0.1)
+
+
+PUSHED = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.04, 0.0, 0.0], [0.06, 0.0, 0.0], [0.06, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("force", "margin"),
+    [
+        ((0.0, 0.0, 0.0, 0.0, 0.0), 0.05),  # something else pushes it
+        ((0.0, 0.0, 1.0, 0.0, 0.0), 0.01),  # hit before the third sample, it slides on
+        ((0.0, 1.0, 1.0, 1.0, 1.0), -0.01),
+        ((1.0, 0.0, 0.0, 0.0, 0.0), -0.01),
+        ((0.0, 0.009, 0.0, 0.0, 0.0), 0.05),  # noise of the solver
+        ((0.0, 0.0, 0.0, 0.0, 1.0), 0.05),
+    ],
+)
+def test_an_object_collides_with_what_its_contact_moves(force: tuple[float, ...], margin: float) -> None:
+    trace = world(5, tray=PUSHED, ball=[[0.0, 0.0, 0.2]] * 5)
+    touched = replace(trace, touches={("ball", "tray"): np.array(force)}, touch_watched=("ball",))
+    for target in ("tray", "tray_ws"):
+        found = judged("object-does-not-collide", touched, one="ball", other=target)
+        assert (found.robustness, found.unit) == (pytest.approx(margin), "m")
+    limit = limited(touched, "tray", "displacement_limit", "0.08")
+    assert judged("object-does-not-collide", limit, one="ball", other="tray").robustness == pytest.approx(margin + 0.03)
+
+
+def test_what_was_hit_and_came_to_rest_is_moved_by_something_else() -> None:
+    path = [[0.0, 0.0, 0.0], [0.03, 0.0, 0.0], [0.03, 0.0, 0.0], [0.06, 0.0, 0.0]]
+    trace = world(4, tray=path, ball=[[0.0, 0.0, 0.2]] * 4)
+    hit = replace(trace, touches={("ball", "tray"): np.array([0.0, 5.0, 0.0, 0.0])}, touch_watched=("ball",))
+    assert judged("object-does-not-collide", hit, one="ball", other="tray").robustness == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(("peak", "outcome"), [(139.0, Outcome.HOLDS), (142.0, Outcome.VIOLATED)])
+def test_an_object_hits_what_cannot_move_by_force(peak: float, outcome: Outcome) -> None:
+    trace = replace(world(3, ball=[[0.0, 0.0, 0.2]] * 3), immovable=("tray",), touch_watched=("ball",))
+    pressed = replace(trace, touches={("ball", "tray"): np.array([0.0, peak, 3.0])})
+    found = judged("object-does-not-collide", pressed, one="ball", other="tray_ws")
+    assert (found.outcome, found.robustness, found.unit) == (outcome, pytest.approx(140.0 - peak), "N")
+    far = [[1.0, 0.0, 0.0], [1.04, 0.0, 0.0], [1.04, 0.0, 0.0]]
+    mixed = replace(
+        world(3, ball=[[0.0, 0.0, 0.2]] * 3, far=far),
+        immovable=("tray",),
+        touch_watched=("ball",),
+        touches={("ball", "tray"): np.array([0.0, 14.0, 0.0]), ("ball", "far"): np.array([0.0, 1.0, 0.0])},
+    )
+    found = judged("object-does-not-collide", mixed, one="ball", other="both_ws")
+    assert (found.robustness, found.unit) == (pytest.approx(0.2), "")
+
+
+def test_an_object_whose_contacts_were_not_recorded_is_unknown() -> None:
+    trace = world(3, ball=[[0.0, 0.0, 0.2]] * 3)
+    assert judged("object-does-not-collide", trace, one="ball", other="tray").outcome is Outcome.UNKNOWN

@@ -81,3 +81,13 @@ def test_a_text_takes_anything_and_a_target_any_element() -> None:
 
 def test_an_unknown_value_conflicts_with_nothing() -> None:
     assert [entry.code for entry in found(MODEL.replace("{ <arms.panda> }", "{ <arms.pandora> }"))] == ["unknown-name"]
+
+
+def test_a_phrase_with_a_word_more_that_takes_the_variable_is_offered() -> None:
+    text = MODEL.replace("<part> is located at <goal>, 0.5 seconds after", "<part> does not collide <goal>, after")
+    (finding,) = [entry for entry in errors(text) if entry.code == "type-conflict"]
+    assert finding.message.endswith("use two variables, or write '<one> does not collide with <other>'")
+    assert "Write '<part> does not collide with <goal>'" in [fix.title for fix in finding.fixes]
+    text = text.replace("<part> does not collide <goal>", "<robot> does not collide with <goal>")
+    (finding,) = [entry for entry in errors(text) if entry.code == "type-conflict"]
+    assert finding.fixes[0].title == "Write '<robot> does not collide <goal>'"

@@ -11,7 +11,7 @@ import pytest
 
 from gherkin_kit import edited, feature, model_of
 from kit import MODEL
-from robbdd_tools.gherkin.skeleton import patterns, skeleton
+from robbdd_tools.gherkin.skeleton import free_patterns, patterns, skeleton
 
 EVERYTHING = edited(
     "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
@@ -65,3 +65,17 @@ def test_a_sentence_of_two_roles_is_one_function() -> None:
 def test_a_file_that_is_not_python_is_refused() -> None:
     with pytest.raises(SyntaxError):
         skeleton(patterns(model_of(MODEL)), "def (:", "main.bdd")
+
+
+def test_a_text_that_says_a_phrase_of_the_catalog_needs_no_step() -> None:
+    clause = "holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
+    said, other = (
+        edited(
+            clause, clause.replace("<part> is located at <goal>", f"pred('{{a}} is {words} {{b}}', a=<part>, b=<goal>)")
+        )
+        for words in ("located at", "next to")
+    )
+    assert free_patterns(model_of(said)) == []
+    assert [pattern.text for pattern in free_patterns(model_of(other))] == [
+        '{a} is next to {b} for {seconds:g} seconds after event "{event:Quoted}"'
+    ]

@@ -119,5 +119,6 @@ def test_each_predicate_of_lengths_names_the_effect_of_errors() -> None:
         "is-open",
         "keeps-distance",
         "keeps-joints-from-limits",
+        "object-does-not-collide",
         "stays-near-line",
     }

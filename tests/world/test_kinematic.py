@@ -67,6 +67,7 @@ def test_an_object_moves_with_the_gripper_and_stays_where_it_is_released(agent: 
         ("is-at-rest", {"object": CUBE}),
         ("touches", {"one": CUBE, "other": BIN}),
         ("does-not-touch", {"one": CUBE, "other": BIN}),
+        ("object-does-not-collide", {"one": CUBE, "other": BIN}),
     ],
 )
 def test_clauses_about_contacts_are_unknown(predicate: str, words: dict[str, str]) -> None:

@@ -21,6 +21,7 @@ from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.judging.scenario_clauses import (
     clause_of,
+    is_free_text,
     iteration_of,
     judged_clause,
     named_predicates,
@@ -89,7 +90,7 @@ class ScenarioRun:
         steps = {line: stated_by_step(role, text, self._known.get(line), wording, named) for line, role, text in texts}
         self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
         self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}
-        self._texts = {line for line, step in steps.items() if isinstance(step, Text)}
+        self._texts = {line for line, _, text in texts if is_free_text(steps[line], text)}
         self._clauses = {
             line: judged_clause(step, self._known.get(line), spec)
             for line, step in steps.items()
@@ -216,7 +217,7 @@ class ScenarioRun:
     def finish(self) -> None:
         """Report the scenario as finished.
 
-        Before, texts that have a policy and probes are judged, and open clauses are reported as unknown.
+        Before, probes and texts that have a policy or say a predicate's phrase are judged. Open clauses are unknown.
         """
         for line, sentence in list(self._open.items()):
             # behave has no step for such a text, nor for a probe.

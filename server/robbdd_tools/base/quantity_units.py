@@ -57,6 +57,12 @@ def is_quantity(text: str) -> bool:
     return split_quantity(text) is not None
 
 
+def dimension_of(text: str) -> str:
+    """Return what a quantity measures, such as ``length``; empty for any other text."""
+    found = split_quantity(text)
+    return "" if found is None else UNITS[found[1]][0]
+
+
 def split_quantity(text: str) -> tuple[str, str] | None:
     """Return the number and the unit of a quantity as they are written; ``None`` for any other text."""
     match = _QUANTITY.fullmatch(text)

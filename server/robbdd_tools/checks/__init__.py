@@ -13,6 +13,7 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.behaviour_tree import behaviour_tree
 from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.catalog_models import catalog_models
+from robbdd_tools.checks.catalog_phrase import catalog_phrase
 from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.cyclic_import import cyclic_import
 from robbdd_tools.checks.defined_event import defined_event
@@ -101,6 +102,7 @@ FILE_RULES = (
     catalog_entry,
     cyclic_import,
     catalog_models,
+    catalog_phrase,
     duplicate_iri,
     execution_fit,
     model_file,

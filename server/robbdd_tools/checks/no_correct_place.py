@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.uses import Clauses
     from robbdd_tools.syntax.declaration import Declaration
 
 CODE = "no-correct-place"
@@ -80,18 +79,14 @@ def _asked(scenario: Scenario) -> dict[str, tuple[Site, tree.Ref]]:
     """Return the variables of the objects whose correct places clauses ask for, each with its first occurrence."""
     found: dict[str, tuple[Site, tree.Ref]] = {}
     for site, clauses in ((scenario.template, scenario.outer), (scenario.site, scenario.clauses)):
-        if site is None or clauses is None or not _asks(clauses):
-            continue
         phrases = {phrase_words(word) for word in WORDS}
+        if site is None or clauses is None or not any(use.phrase in phrases for use in clauses.uses):
+            continue
         for key, uses in uses_by_variable(site, clauses).items():
             for use in uses:
                 if use.phrase in phrases and "object" in use.kinds:
                     found.setdefault(key, (site, use.ref))
     return found
-
-
-def _asks(clauses: Clauses) -> bool:
-    return any(phrase.word in WORDS for phrase in clauses.phrases)
 
 
 def _placed(snapshot: Snapshot, file: FileAnalysis) -> frozenset[Key] | None:

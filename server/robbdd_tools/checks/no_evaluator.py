@@ -11,6 +11,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.step_files import may_define
+from robbdd_tools.catalog.phrases_in_text import phrase_with, predicate_in_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.protocol.time_words import instant_words, interval_words
@@ -20,6 +21,7 @@ from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
+    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
@@ -41,6 +43,8 @@ class Unjudged:
 def no_evaluator(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such clause at its text."""
     for found in unjudged(snapshot, file):
+        if said_by(found.clause) is not None:
+            continue
         message = needs_evaluator(may_have_policy=isinstance(found.clause, tree.Fluent))
         yield Diagnostic(file.document.uri, found.span, Severity.WARNING, CODE, message)
 
@@ -68,6 +72,18 @@ def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
         if not any(may_define(model, sentence) for model in models):
             found.append(Unjudged(placed, clause, text_of(clause).span.shifted(placed.offset)))
     return found
+
+
+def said_by(clause: FreeClause) -> tuple[Predicate, str] | None:
+    """Return the predicate whose phrase a clause's text says, and the phrase with the clause's variables."""
+    if not isinstance(clause, tree.Fluent) or not isinstance(clause.predicate, tree.TextPredicate):
+        return None
+    variables = {one.name.text: one.value.path for one in clause.predicate.arguments}
+    found = predicate_in_text(clause.predicate.template.value, variables)
+    if found is None:
+        return None
+    predicate, placeholders = found
+    return predicate, phrase_with(predicate, {slot: f"<{variables[name]}>" for slot, name in placeholders.items()})
 
 
 def text_of(clause: FreeClause) -> tree.Text:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.quantity_units import units_of
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import MAX_OFFERED, change, written_text
 from robbdd_tools.names.types import narrowed, variable_key
+from robbdd_tools.names.uses import slot_kinds
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -40,10 +43,61 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
     """
     if use.bound is not None:
         return
-    phrase = next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
+    phrase = _phrase_of(use, clauses)
     taken = {value.path for _, value in phrase.arguments if isinstance(value, tree.Ref)} if phrase is not None else ()
     fitting = [name for name, kinds in others.items() if kinds & use.kinds and name not in taken]
     yield from (change(site, f"Change to '{name}'", use.ref, name) for name in fitting[:MAX_OFFERED])
+
+
+def similar_phrase(use: Use, clauses: Clauses, kinds: Kinds) -> str:
+    """Return a predicate's phrase that differs from that of a use by words at its end, and accepts ``kinds`` there.
+
+    Example: *does not collide* of an agent, and *does not collide with* of an object. Empty if there is none.
+    """
+    phrase = _phrase_of(use, clauses)
+    predicates = load_catalog().predicates
+    if phrase is None or phrase.word not in predicates:
+        return ""
+    index = next(index for index, (_, value) in enumerate(phrase.arguments) if value is use.ref)
+    own = _fixed_words(predicates[phrase.word].phrase)
+    for word in predicates.values():
+        words, slots = _fixed_words(word.phrase), list(slot_kinds(word.name).values())
+        if word.name != phrase.word and _is_longer(own, words) and slots[index] & kinds:
+            return word.phrase
+    return ""
+
+
+def with_similar_phrase(site: Site, use: Use, clauses: Clauses, similar: str) -> Iterator[Fix]:
+    """Yield a fix that writes a similar phrase with the same values."""
+    phrase = _phrase_of(use, clauses)
+    if phrase is not None and similar:
+        values = iter([_as_written(site, value) for _, value in phrase.arguments])
+        text = _SLOT.sub(lambda _: next(values), similar)
+        yield change(site, f"Write '{text}'", phrase, text)
+
+
+_SLOT = re.compile(r"<[\w-]+>|[#$][\w-]+")
+
+
+def _phrase_of(use: Use, clauses: Clauses) -> tree.PhraseUse | None:
+    return next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
+
+
+def _fixed_words(phrase: str) -> list[list[str]]:
+    return [piece.split() for piece in _SLOT.split(phrase)]
+
+
+def _is_longer(one: list[list[str]], other: list[list[str]]) -> bool:
+    """Return whether two phrases have the same slots, and the words of each begin with those of the other."""
+    return len(one) == len(other) and all(
+        own[: len(their)] == their[: len(own)] and bool(own) == bool(their)
+        for own, their in zip(one, other, strict=True)
+    )
+
+
+def _as_written(site: Site, node: tree.Node) -> str:
+    written = written_text(site, node)
+    return f"<{written}>" if isinstance(node, tree.Ref) else written
 
 
 def with_units(site: Site, node: tree.Node, dimension: str) -> Iterator[Fix]:

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.chosen_elements import written_elements
 from robbdd_tools.checks.finding import article, finding, related_to
-from robbdd_tools.checks.replacements import other_values, other_variables, variables_with_kinds, with_units
+from robbdd_tools.checks.replacements import (
+    other_values,
+    other_variables,
+    similar_phrase,
+    variables_with_kinds,
+    with_similar_phrase,
+    with_units,
+)
 from robbdd_tools.checks.template_variants import Column, Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of
 from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key
@@ -73,12 +80,14 @@ def _between_phrases(
         if site is not own:
             continue
         other = next((entry for entry in seen if not entry[1].kinds & use.kinds), seen[0])
+        similar = similar_phrase(use, clauses, left)
         message = (
             f"'{use.ref.path}' stands for {article(kind_words(left))} in '{other[1].phrase}', "
             f"so it cannot be {article(kind_words(use.kinds))} in '{use.phrase}': use two variables"
+            + (f", or write '{similar}'" if similar else "")
         )
         related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
-        fixes = tuple(other_variables(site, use, clauses, others))
+        fixes = (*with_similar_phrase(site, use, clauses, similar), *other_variables(site, use, clauses, others))
         yield finding(site, use.ref, Severity.ERROR, CODE, message, related, fixes)
         yield from _other_place(other, site, use.ref, f"elsewhere it is {article(kind_words(use.kinds))}")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.said_phrases import said_phrase
 from robbdd_tools.gherkin.words import Placeholder, condition_words, filled, word
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
@@ -49,12 +50,14 @@ class UnknownElements(Exception):
 class Binder:
     """Binds the clauses of one model to values.
 
-    A clause whose IRI is in ``by_code`` also contains its values by name.
+    A clause whose IRI is in ``by_code`` also contains its values by name. With ``reads_texts``, a text that says a
+    predicate's phrase of values that fit is a fluent with this predicate, so that it can be judged.
     """
 
     model: AcceptanceModel
     catalog: Catalog
     by_code: Set[str] = frozenset()
+    reads_texts: bool = False
     _curies: dict[str, str] = field(default_factory=dict[str, str])
     _named_predicates: dict[str, Predicate] = field(default_factory=dict[str, "Predicate"])
 
@@ -99,6 +102,11 @@ class Binder:
                 condition, time = self._condition(clause, values), self._time(clause, values)
                 if time is None:
                     return self._without_time(words, clause, values)
+                said = said_phrase(self.model, clause, values) if self.reads_texts else None
+                if said is not None:
+                    predicate, cells = said
+                    slots = {name: self.filler(cell) for name, cell in cells.items()}
+                    return stated.Fluent(predicate, slots, time, clause.iri, self._named(clause, values), condition)
                 return stated.Text(words, time, clause.iri, self._named(clause, values), condition)
             case TextClause():
                 words, time = text.free(clause.text), self._time(clause, values)

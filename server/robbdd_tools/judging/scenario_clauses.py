@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.judging.parsed_sentences import read_step
+from robbdd_tools.judging.parsed_sentences import fluent_pattern, read_step
 from robbdd_tools.judging.policies import with_policies
 from robbdd_tools.monitor.compound import definition_of
 from robbdd_tools.monitor.time import in_iterations
-from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, leaves_of
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text, leaves_of
 from robbdd_tools.protocol.time_words import FIRST_WORDING, WORDING
 
 if TYPE_CHECKING:
@@ -38,6 +39,16 @@ def stated_by_step(
     if known is None:
         return read_step(role, text, wording, named)
     return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text, wording, named), known)
+
+
+def is_free_text(statement: Statement | None, text: str) -> bool:
+    """Return whether the text of a step is none of the catalog's sentences, so that behave has no step for it.
+
+    A fluent whose predicate is in the catalog may be written as free text, too.
+    """
+    if isinstance(statement, Fluent) and definition_of(statement.predicate) is None:
+        return re.fullmatch(fluent_pattern(statement.predicate), text) is None
+    return isinstance(statement, Text)
 
 
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:

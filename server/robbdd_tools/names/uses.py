@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.phrases_in_text import predicate_in_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax import tree
 
@@ -148,7 +149,8 @@ class _Collector:
     def _phrase(self, node: tree.PhraseUse | tree.TextPredicate | tree.NamedUse, bound: Mapping[str, Bound]) -> None:
         if isinstance(node, tree.TextPredicate):
             refs = [(argument.value, ANYTHING) for argument in node.arguments]
-            phrase = "pred(…)"
+            said = predicate_in_text(node.template.value, [one.name.text for one in node.arguments])
+            phrase = "pred(…)" if said is None else said[0].phrase
         elif isinstance(node, tree.NamedUse):
             # What its parameters take depends on another declaration.
             refs = [(value, ANYTHING) for value in node.values if isinstance(value, tree.Ref)]

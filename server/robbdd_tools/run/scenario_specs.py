@@ -27,7 +27,7 @@ from robbdd_tools.graph.acceptance_model import DefinedEvent as ModelEvent
 from robbdd_tools.graph.read.clauses import named_elements, names_in_events, used_names
 from robbdd_tools.graph.read.named_predicates import required_parts
 from robbdd_tools.monitor.policy import Observation, Policy
-from robbdd_tools.protocol.clauses import BehaviourCall, DefinedEvent, EventOccurrence, leaves_of
+from robbdd_tools.protocol.clauses import BehaviourCall, DefinedEvent, EventOccurrence, Text, leaves_of
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.run.emitters import emitters_of
@@ -83,7 +83,7 @@ class SpecWriter:
         )
         policies = () if execution is None else execution.policies
         by_code = frozenset(policy.clause for policy in policies if policy.rule.kind == "python")
-        self._binder = Binder(model, load_catalog(), by_code)
+        self._binder = Binder(model, load_catalog(), by_code, reads_texts=True)
         self._sets: dict[str, tuple[str, ...]] = {}
         for name, elements in model.sets.items():
             for element in elements:
@@ -173,8 +173,9 @@ class SpecWriter:
         found = ClauseSpec(line, step.clause, name, step.role, step.text, statement, (), iterations)
         if isinstance(statement, BehaviourCall | EventOccurrence):
             return found
-        parts = tuple(leaf.iri for leaf in leaves_of(statement))
-        if not self._binder.by_code.isdisjoint(parts):
+        leaves = tuple(leaves_of(statement))
+        parts = tuple(leaf.iri for leaf in leaves)
+        if not self._binder.by_code.isdisjoint(parts) or any(isinstance(leaf, Text) for leaf in leaves):
             found = replace(found, statement=self._binder.bind(*step.source))
         return replace(found, parts=parts) if isinstance(statement, StatedJunction) else found
 

@@ -49,10 +49,13 @@ def unit(evidence: Evidence, arguments: Arguments) -> str:
 
 def _split(evidence: Evidence, carriers: list[str]) -> tuple[list[str], list[str]]:
     """Return the carriers judged by force, and those judged by displacement."""
-    if limit_of(evidence, carriers, "force_limit") is not None:
-        return carriers, []
-    by_force = [carrier for carrier in carriers if evidence.is_immovable(carrier)]
+    by_force = [carrier for carrier in carriers if is_judged_by_force(evidence, carrier, carriers)]
     return by_force, [carrier for carrier in carriers if carrier not in by_force]
+
+
+def is_judged_by_force(evidence: Evidence, carrier: str, carriers: list[str]) -> bool:
+    """Return whether one of a target's ``carriers`` is judged by contact force instead of displacement."""
+    return limit_of(evidence, carriers, "force_limit") is not None or evidence.is_immovable(carrier)
 
 
 DOES_NOT_COLLIDE = Predicate(

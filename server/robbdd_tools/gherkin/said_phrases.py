@@ -1,0 +1,50 @@
+"""Read the text of a ``pred("…")`` as the predicate whose phrase it says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.quantity_units import dimension_of
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.phrases_in_text import accepts, predicate_in_text
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, TextFluent
+from robbdd_tools.protocol.clauses import AnyOf
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Predicate, Slot
+
+
+def said_phrase(
+    model: AcceptanceModel, clause: TextFluent, values: Mapping[Iri, Cell | AnyOf]
+) -> tuple[Predicate, dict[str, Cell]] | None:
+    """Return the predicate whose phrase a text says, and the values of its slots.
+
+    The result is ``None`` if the text says no phrase, or if a value has another kind than its slot.
+    """
+    found = predicate_in_text(clause.template, clause.arguments)
+    if found is None:
+        return None
+    predicate, placeholders = found
+    cells: dict[str, Cell] = {}
+    for slot in predicate.slots:
+        term = clause.arguments[placeholders[slot.name]]
+        value = values.get(term, term)
+        # The elements of an *any of* are words, so their kinds are not known.
+        if isinstance(value, AnyOf) or not _fits(model, slot, value):
+            return None
+        cells[slot.name] = value
+    return predicate, cells
+
+
+def _fits(model: AcceptanceModel, slot: Slot, value: Cell) -> bool:
+    match value:
+        case Iri():
+            elements = model.sets.get(value)
+            return _fits(model, slot, elements) if elements else accepts(slot.kind, model.kinds.get(value, ""))
+        case tuple():
+            return bool(value) and all(_fits(model, slot, one) for one in value)
+        case str():
+            return slot.kind is Kind.QUANTITY and dimension_of(value) == slot.dimension
+        case _:
+            return False
