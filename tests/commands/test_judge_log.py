@@ -26,6 +26,7 @@ NOT_IN_A_LOG = {"can reach", "has config"}
     [
         ("pickplace", "pickplace.bddx", "sqlite"),
         ("sorting", "sorting.bdd", "mcap"),
+        ("inturn", "inturn.bdd", "sqlite"),
         ("shelf", "shelf.bdd", "sqlite"),
         ("deadlines", "deadlines.bdd", "mcap"),
         ("relatedstories", "stories.bdd", "sqlite"),
@@ -40,6 +41,7 @@ def test_a_bag_of_a_run_gives_its_verdicts_and_margins(example: str, model: str,
     bag = "bag" if (folder / "bag" / "metadata.yaml").exists() else "bag/1"
     values = {name.rpartition("var-")[2]: value for name, value in run[0]["values"].items()}
     where = " and ".join(f"{name}={one.rpartition(':')[2]}" for name, one in values.items() if isinstance(one, str))
+    where = where or " and ".join(f"{name}={one}" for name, one in values.items() if isinstance(one, float))
     chosen = ["--where", where, "--scenario", variant]
     done = robbdd(folder, "judge", bag, model, "--no-store", "--json", "log.json", *chosen)
     assert done.returncode in (0, 1), done.stderr

@@ -110,7 +110,7 @@ def test_what_the_language_cannot_say_is_told_by_triple() -> None:
 def test_a_part_that_cannot_be_written_is_left_out_with_the_reason() -> None:
     text = write_model(parse(FOREIGN.replace("ex:act ex:there", "ex:there"), "ttl"), "model.scene")
     assert {node.rpartition("#")[2]: reason for node, reason in text.left_out.items()} == {
-        "moving": "its When does not have either behaviours or one 'for all'",
+        "moving": "it has neither a When with a behaviour nor a 'for all'",
         "variant": "its template https://example.org/cell#moving is not written",
         "story": "it has no scenario that can be written",
     }

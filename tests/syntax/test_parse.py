@@ -32,8 +32,8 @@ CARRY = "duration: from <s> until <e> <r> picks <a>"
 def clause(text: str) -> tree.Expression:
     root = parse(template(text))
     assert isinstance(root, tree.Template)
-    assert root.body.given is not None
-    return root.body.given
+    assert root.body.parts[0].given is not None
+    return root.body.parts[0].given
 
 
 @pytest.mark.parametrize(

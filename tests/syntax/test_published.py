@@ -213,8 +213,7 @@ PICKS_AND_PLACES = "Given: <a> can reach <b> before <s> When: <a> picks <b> and 
 def test_a_behaviour_lasts_as_its_clauses_tell(clauses: str, duration: tuple[str, str] | None) -> None:
     root = parse_declaration("bdd", f"Scenario Template x {{ {clauses} }}").tree
     assert isinstance(root, tree.Template)
-    assert root.body.when is not None
-    found = root.body.when.behaviour.duration
+    found = next(root.body.behaviours).duration
     assert (found and (found.start.path, found.end.path)) == duration
 
 
@@ -243,8 +242,7 @@ def test_other_phrases_of_a_word_have_its_slots_and_are_read_as_it() -> None:
     for word, alias in aliases:
         root = parse_declaration("bdd", f"Scenario Template x {{ When: {alias} }}").tree
         assert isinstance(root, tree.Template)
-        assert root.body.when is not None
-        action = root.body.when.behaviour.action
+        action = next(root.body.behaviours).action
         assert action.word == word.name
         assert {name for name, _ in action.arguments} == {slot.name for slot in word.slots}
 

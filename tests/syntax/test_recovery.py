@@ -39,10 +39,12 @@ LOOP = "    for all ( var one in <parts> ) { When: <robot> picks <one> }\n"
     [
         (GIVEN + THEN, "Then", "'Then:' must come after 'When:' or 'for all'"),
         (GIVEN + THEN + LOOP, "Then", "'Then:' must come after 'When:' or 'for all'"),
-        (WHEN + THEN + GIVEN, "Given", "'Given:' must come before 'When:', 'for all' and 'Then:'"),
-        (GIVEN + WHEN + THEN + LOOP, "for", "'for all' must come after 'Given:' and before 'Then:'"),
-        (GIVEN + WHEN + LOOP + THEN, "for", "'for all' must come after 'Given:' and before 'Then:'"),
-        (GIVEN + LOOP + WHEN + THEN, "When", "'When:' must come after 'Given:' and before 'Then:'"),
+        (WHEN + THEN + GIVEN, "Given", "'Given:' must come before 'When:' or 'for all'"),
+        (GIVEN + GIVEN + WHEN, "Given", "'Given:' must come before 'When:' or 'for all'"),
+        (GIVEN + WHEN + THEN + THEN, "Then", "'Then:' must come after 'When:' or 'for all'"),
+        ("    When:\n" + LOOP, "When", "nothing is written between 'When:' and 'for all'"),
+        ("    Given:\n" + WHEN, "Given", "nothing is written between 'Given:' and 'When'"),
+        ("    When:\n" + "event <pick-start> occurs" + LOOP, "for", "'for all' is written instead of 'When:'"),
     ],
 )
 def test_a_part_of_a_scenario_that_is_out_of_order_is_told_its_place(parts: str, word: str, message: str) -> None:
@@ -50,6 +52,22 @@ def test_a_part_of_a_scenario_that_is_out_of_order_is_told_its_place(parts: str,
     first = parse_declaration("bdd", text).faults[0]
     assert text[first.span.start : first.span.end] == word
     assert first.message.startswith(message)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        GIVEN + WHEN + THEN + LOOP,
+        GIVEN + WHEN + LOOP + THEN,
+        GIVEN + LOOP + WHEN + THEN,
+        LOOP + LOOP + GIVEN + LOOP + THEN + GIVEN + WHEN,
+        WHEN + "Then: holds(<part> is located at <goal>, after <pick-end>) Given: holds(<part> is held by <robot>, "
+        "before <pick-end>) " + LOOP,
+    ],
+)
+def test_parts_may_follow_each_other(parts: str) -> None:
+    text = TEMPLATE.replace(GIVEN + WHEN + THEN, parts)
+    assert parse_declaration("bdd", text).faults == ()
 
 
 @pytest.mark.parametrize(

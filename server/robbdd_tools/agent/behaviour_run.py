@@ -11,7 +11,7 @@ from robbdd_tools.agent.behaviour_calls import Call, Choice, Timing, groups_of
 from robbdd_tools.agent.behaviour_executors import BehaviourExecutors
 from robbdd_tools.agent.idle_arms import IdleArms
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
-from robbdd_tools.catalog.coordination import DEFINED, EXTERNAL, emitter
+from robbdd_tools.catalog.coordination import DEFINED, EXTERNAL, each_emitter, emitter
 from robbdd_tools.catalog.executors import DEFAULT, executes
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
@@ -208,12 +208,16 @@ class BehaviourRun:
 
     def _awaited(self, call: Call) -> list[str]:
         """Return the events that must still occur before a behaviour begins. Its own events are not awaited."""
-        emitters = {event: self._emitters.get(event, EXTERNAL) for event in call.awaited}
+        emitters = {event: each_emitter(self._emitters.get(event, EXTERNAL)) for event in call.awaited}
         iteration = self._iteration(call)
         occurred = {stamp.name for stamp in self.stamps if stamp.iteration in (0, iteration)}
         own = emitter(call.part, "")
-        left = [event for event, name in emitters.items() if name not in occurred and not name.startswith(own)]
-        return [event for event in left if emitters[event] != DEFINED or not self.has_occurred(event, iteration)]
+        left = [
+            event
+            for event, names in emitters.items()
+            if occurred.isdisjoint(names) and not any(name.startswith(own) for name in names)
+        ]
+        return [event for event in left if emitters[event] != (DEFINED,) or not self.has_occurred(event, iteration)]
 
     def _refuse_to_wait(self, running: Collection[int]) -> None:
         """Raise ``SimulationError`` if every behaviour that has not ended waits for an event."""

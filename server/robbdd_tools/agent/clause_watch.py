@@ -11,7 +11,7 @@ import numpy as np
 from robbdd_tools.agent.on_demand_quantities import OnDemandQuantities
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.judging.margin_curves import fluent_margins, unit_of
-from robbdd_tools.judging.scenario_clauses import iteration_of
+from robbdd_tools.judging.scenario_clauses import iteration_of, iteration_of_event
 from robbdd_tools.monitor.curve import Curve, with_points
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window
@@ -223,7 +223,7 @@ class ClauseWatch:
             found[line] = begin, end
         trace = self._execution.trace
         for line, event in self._watched.events.items():
-            time = trace.event_time(event, iteration_of(self._known.get(line)))
+            time = trace.event_time(event, iteration_of_event(event, self._known.get(line), self._spec))
             found[line] = time, time
         return found
 

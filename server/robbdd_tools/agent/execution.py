@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.behaviour_run import BehaviourRun
+from robbdd_tools.catalog.coordination import each_emitter
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.monitor.trace import Trace
@@ -220,6 +221,7 @@ class Execution:
 def _names_of(events: Mapping[str, str]) -> dict[str, list[str]]:
     """Invert event → emitter to emitter → events."""
     names: dict[str, list[str]] = {}
-    for event, emitter in events.items():
-        names.setdefault(emitter, []).append(event)
+    for event, emitters in events.items():
+        for emitter in each_emitter(emitters):
+            names.setdefault(emitter, []).append(event)
     return names

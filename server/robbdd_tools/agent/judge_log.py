@@ -29,7 +29,7 @@ from robbdd_tools.judging.log_executions import check_one_execution
 from robbdd_tools.judging.log_names import check_events
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
-from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
+from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, iteration_of_event, statement_of
 from robbdd_tools.logs.log_contents import LogContents
 from robbdd_tools.logs.log_period import cut
 from robbdd_tools.logs.log_table import read_events
@@ -114,7 +114,7 @@ def verdict_on(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Ve
     """Return the verdict on a clause of a scenario by the evidence of a log."""
     statement, trace = statement_of(clause), evidence.trace
     if isinstance(statement, EventOccurrence):
-        return occurred(trace, statement.event, iteration_of(clause))
+        return occurred(trace, statement.event, iteration_of_event(statement.event, clause, spec))
     if isinstance(statement, BehaviourCall):
         return _reported(statement, clause, trace, spec)
     return decide(clause_of(clause, spec), trace, evidence.regions, spec.events.keys())

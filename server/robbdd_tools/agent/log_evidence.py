@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +18,10 @@ from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
 from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.judging.log_names import elements_of, occurrences_of
+from robbdd_tools.judging.scenario_clauses import iterations_of_events, statement_of
 from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.protocol.clauses import EventOccurrence
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.world.extent import outline_of
 from robbdd_tools.world.scene import Cast, cast_scene, contents_of
@@ -99,18 +102,30 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
     """Return the events of a scenario in a log. Without a report, the scenario starts and ends with the log."""
     stamps: list[EventStamp] = []
+    iterations = {**_awaited(spec), **iterations_of_events(spec)}
     for event, emitter in spec.events.items():
         if emitter == DEFINED:
             continue
         times = occurrences_of(event, emitter, contents.texts)
         if emitter not in (START, END):
-            stamps += (EventStamp(event, time, number) for number, time in enumerate(times, start=1))
+            numbers = chain(sorted(iterations.get(event, ())), count(1 + max(iterations.get(event, ()), default=0)))
+            stamps += (EventStamp(event, time, number) for number, time in zip(numbers, times, strict=False))
             continue
         if not times:
             times = [0.0 if emitter == START else contents.end]
             remarks.append(f"the log does not report {event}: the {emitter.rpartition('-')[2]} of the log counts")
         stamps += (EventStamp(event, time) for time in times)
     return tuple(sorted(stamps, key=lambda stamp: stamp.time))
+
+
+def _awaited(spec: ScenarioSpec) -> dict[str, set[int]]:
+    """Map each event of a When to the iterations that wait for it."""
+    found: dict[str, set[int]] = {}
+    for clause in spec.clauses:
+        statement = statement_of(clause) if clause.role == "when" and clause.iterations else None
+        if isinstance(statement, EventOccurrence):
+            found.setdefault(statement.event, set()).add(clause.iterations[0])
+    return found
 
 
 def _tool(arm: LoggedArm, positions: FloatArray, base: Poses | None) -> Poses | None:

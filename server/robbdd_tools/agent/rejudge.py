@@ -23,7 +23,7 @@ from robbdd_tools.catalog.coordination import DEFINED
 from robbdd_tools.judging.decisions import decide, occurred
 from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.judging.margin_ranges import margin_ranges
-from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
+from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of_event, statement_of
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.time import TOLERANCE, After, Before, TimeConstraint, occurrences
@@ -162,7 +162,7 @@ def decided_on_trace(
     """
     trace, statement = evidence.trace, statement_of(clause)
     if isinstance(statement, EventOccurrence):
-        event, iteration = statement.event, iteration_of(clause)
+        event, iteration = statement.event, iteration_of_event(statement.event, clause, spec)
         return _unrecorded(event, spec, recorded) or occurred(trace, event, iteration)
     read = clause_of(clause, spec)
     for fluent in fluents_of(read):

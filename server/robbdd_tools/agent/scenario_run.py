@@ -23,6 +23,7 @@ from robbdd_tools.judging.scenario_clauses import (
     clause_of,
     is_free_text,
     iteration_of,
+    iteration_of_event,
     judged_clause,
     named_predicates,
     stated_by_step,
@@ -194,7 +195,8 @@ class ScenarioRun:
 
     def event(self, line: int, text: str) -> Verdict:
         """Simulate until the event of a When step has occurred."""
-        event, iteration = self._events.get(line, text), iteration_of(self._known.get(line))
+        event = self._events.get(line, text)
+        iteration = iteration_of_event(event, self._known.get(line), self._spec)
 
         def verdict(execution: Execution) -> Verdict:
             if event not in self._spec.events:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.coordination import emitter
+from robbdd_tools.catalog.coordination import each_emitter, emitter
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import BehaviourClause, every_clause
 from robbdd_tools.monitor.time import After, During
@@ -146,7 +146,7 @@ def probed_templates(plan: Plan) -> tuple[dict[str, str], dict[str, ProbedTempla
 
 def _times(spec: ScenarioSpec, call: BehaviourCall) -> dict[str, TimeConstraint]:
     """Return the time constraints of probes whose events the scenario has."""
-    events = {emits: event for event, emits in spec.events.items()}
+    events = {one: event for event, emits in spec.events.items() for one in each_emitter(emits)}
     first, last = call.behaviour.events[0], call.behaviour.events[-1]
     start = call.start or events.get(emitter(call.part, first) if call.part else first)
     end = call.end or events.get(emitter(call.part, last) if call.part else last)

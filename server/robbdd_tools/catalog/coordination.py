@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from robbdd_tools.catalog.executable import Implementation
@@ -17,12 +17,26 @@ DEFINED = "defined"
 """Emitter of an event that a template defines by conditions. It is found in the trace."""
 
 
+_SEVERAL = " | "
+"""Between the emitters of one event; an IRI contains no space."""
+
+
 def emitter(node: str, event: str) -> str:
     """Return the emitter of an event inside a node, which is the node itself or the behaviour that it executes.
 
-    In a When with several behaviours, ``node`` is the IRI of the clause of one of them.
+    In a template with several behaviours, ``node`` is the IRI of the clause of one of them.
     """
     return f"{node} {event}"
+
+
+def joined(emitters: Iterable[str]) -> str:
+    """Return several emitters of one event as one text; the behaviours of several loops may have the same event."""
+    return _SEVERAL.join(dict.fromkeys(emitters))
+
+
+def each_emitter(emitters: str) -> tuple[str, ...]:
+    """Return the emitters in a text of ``joined``."""
+    return tuple(emitters.split(_SEVERAL))
 
 
 @dataclass(frozen=True, slots=True)

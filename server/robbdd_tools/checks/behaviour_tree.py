@@ -49,7 +49,7 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
         elif link.has_siblings:
             message = (
-                "a When with several behaviours states their order itself, so none of them is linked to a node: "
+                "a template with several behaviours states their order itself, so none of them is linked to a node: "
                 "remove the link, or write one template for each node"
             )
             fixes = tuple(_without(snapshot, link, "Remove the link"))
@@ -112,11 +112,12 @@ def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]
 
 
 def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
-    """Yield the behaviours of a valid template that are linked to no node and not repeated."""
+    """Yield the behaviour of a valid template if it is the only one, linked to no node and not repeated."""
     root = declaration.tree
-    if isinstance(root, tree.Template) and not declaration.faults and root.body.when is not None:
-        use = root.body.when.behaviour
-        if use.node is None and not root.body.when.more and use.name.span.start < use.name.span.end:
+    when = root.body.parts[0].when if isinstance(root, tree.Template) and not declaration.faults else None
+    if isinstance(root, tree.Template) and when is not None and len(list(root.body.behaviours)) == 1:
+        use = when.behaviour
+        if use.node is None and use.name.span.start < use.name.span.end:
             yield use
 
 
@@ -157,17 +158,14 @@ def links_in(file: FileAnalysis) -> Iterator[Link]:
 def _linked_uses(declaration: Declaration) -> tuple[tuple[tree.BehaviourUse, tree.Ref, bool, bool], ...]:
     """Return the linked behaviours of a template with their nodes.
 
-    The last two values state whether the behaviour is repeated, and whether its When has several behaviours.
+    The last two values state whether the behaviour is repeated, and whether the template has several behaviours.
     """
     root = declaration.tree
     if not isinstance(root, tree.Template):
         return ()
     loops = (loop for loop in walk(root) if isinstance(loop, tree.ForAll))
     repeated = {inner.span for loop in loops for inner in walk(loop) if isinstance(inner, tree.BehaviourUse)}
-    whens = [node for node in walk(root) if isinstance(node, tree.When)]
+    behaviours = list(root.body.behaviours)
     return tuple(
-        (use, use.node, use.span in repeated, bool(when.more))
-        for when in whens
-        for use in when.behaviours
-        if use.node is not None
+        (use, use.node, use.span in repeated, len(behaviours) > 1) for use in behaviours if use.node is not None
     )

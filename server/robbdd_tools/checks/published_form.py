@@ -136,13 +136,14 @@ class _Rewriter:
                 yield _put(first, "Scenarios: ")
 
     def _body(self, body: tree.Body) -> Iterator[Change]:
-        yield from self._clauses(body.given)
-        if body.when is not None:
-            for use in body.when.behaviours:
-                yield from self._behaviour(use)
-        if body.for_all is not None:
-            yield from self._body(body.for_all.body)
-        yield from self._clauses(body.then)
+        for part in body.parts:
+            yield from self._clauses(part.given)
+            if part.when is not None:
+                for use in part.when.behaviours:
+                    yield from self._behaviour(use)
+            if part.for_all is not None:
+                yield from self._body(part.for_all.body)
+            yield from self._clauses(part.then)
 
     def _clauses(self, expression: tree.Expression | None) -> Iterator[Change]:
         if not isinstance(expression, tree.Conjunction) or expression.span.start < expression.operands[0].span.start:

@@ -37,14 +37,15 @@ def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
 
 
 def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Iterator[Change]:
-    """Yield the changes that add clauses to the end of ``Given`` or ``Then`` in the body of a template.
+    """Yield the changes that add clauses to the end of the first ``Given`` or the last ``Then`` of a template.
 
     Spans count from the start of the template's declaration. In ``texts``, all lines but the first must have no
     indentation of their own.
     """
-    there = body.given if label == "Given" else body.then
+    part = body.parts[0 if label == "Given" else -1]
+    there = part.given if label == "Given" else part.then
     if there is None:
-        yield _new_part(site, body, label, texts)
+        yield _new_label(site, part, label, texts)
         return
     every = operands(there)
     inner = column(site, every[0].span.start)
@@ -85,9 +86,9 @@ def unindented(text: str, by: int) -> str:
     return "".join((first, *(line[min(by, len(line) - len(line.lstrip(" "))) :] for line in rest)))
 
 
-def _new_part(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Change:
-    """Return the change that adds a new ``Given`` at the start of a body, or a new ``Then`` at its end."""
-    middle = body.when or body.for_all
+def _new_label(site: Site, part: tree.Part, label: str, texts: Sequence[str]) -> Change:
+    """Return the change that adds a new ``Given`` at the start of a part, or a new ``Then`` at its end."""
+    middle = part.when or part.for_all
     assert middle is not None
     outer = column(site, middle.span.start)
     inner = outer + _STEP
@@ -96,10 +97,10 @@ def _new_part(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> 
     if rest:
         deeper = inner + _STEP
         clauses = f"({_line(deeper)}{_indented(first, deeper)}{_behind(rest, deeper, 'and')}{_line(inner)})"
-    part = f"{label}:{_line(inner)}{clauses}"
+    text = f"{label}:{_line(inner)}{clauses}"
     if label == "Given":
-        return Span(middle.span.start, middle.span.start), f"{part}{_line(outer)}"
-    return Span(middle.span.end, middle.span.end), f"{_line(outer)}{part}"
+        return Span(middle.span.start, middle.span.start), f"{text}{_line(outer)}"
+    return Span(middle.span.end, middle.span.end), f"{_line(outer)}{text}"
 
 
 def _behind(texts: Iterable[str], indent: int, link: str) -> str:

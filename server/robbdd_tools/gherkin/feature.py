@@ -16,6 +16,7 @@ from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
 from robbdd_tools.gherkin.words import Placeholder
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
+from robbdd_tools.graph.clause_parts import count_of_parts, is_when_clause, part_numbers
 from robbdd_tools.graph.read.clauses import named_elements
 from robbdd_tools.protocol.time_words import WORDING
 
@@ -261,9 +262,20 @@ class _VariantWriter:
 def _in_order(variant: Variant) -> tuple[Clause, ...]:
     """Return the clauses of a variant in the order of their roles: given, when, then.
 
-    Within a role, the clauses of the template are before those of the variant.
+    Within a role, the clauses of the template are before those of the variant. If the template has several parts, its
+    clauses keep their order: the Given clauses of the variant are before them, and its other clauses after the last
+    When.
     """
-    clauses = (*variant.template.clauses, *variant.clauses)
+    own = variant.template.clauses
+    if count_of_parts(own, part_numbers(own)) < 2:
+        return _by_role((*own, *variant.clauses))
+    end = max(index for index, clause in enumerate(own, start=1) if is_when_clause(clause))
+    first = tuple(clause for clause in variant.clauses if _role(clause) == "given")
+    others = tuple(clause for clause in variant.clauses if _role(clause) != "given")
+    return (*first, *own[:end], *_by_role((*own[end:], *others)))
+
+
+def _by_role(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
     return tuple(clause for role in ("given", "when", "then") for clause in clauses if _role(clause) == role)
 
 

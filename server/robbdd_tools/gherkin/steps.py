@@ -24,6 +24,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
     every_clause,
 )
+from robbdd_tools.graph.clause_parts import count_of_parts, is_when_clause, part_numbers
 from robbdd_tools.monitor.compound import definition_of
 from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Operand, Passed
 from robbdd_tools.protocol import clauses as stated
@@ -35,7 +36,12 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
 
 Scope = tuple[tuple[Iri, int], ...]
-"""Iterations of ``for all``, outermost first: the quantifier and the index of its element, from 0."""
+"""Iterations of ``for all``, outermost first: the quantifier and the index of its element, from 0.
+
+In a body with several parts, ``PART`` and the number of the part, from 0, come before the iterations in that part.
+"""
+PART = Iri("")
+Reach = tuple[int, int] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +52,8 @@ class Step:
     - ``statement``: the content of the text as data.
     - ``source``: the clause of the model, and the values of its variables.
     - ``scope``: the iterations of ``for all`` that contain the step, outermost first.
+    - ``reach``: the first and the last part of its body that a Given or Then clause is about; ``None`` for all. A Given
+      clause is about the parts after it, and a Then clause about those before it.
     """
 
     keyword: str
@@ -55,6 +63,7 @@ class Step:
     statement: stated.Statement = field(compare=False, repr=False)
     source: tuple[Clause, Values] = field(compare=False, repr=False)
     scope: Scope = ()
+    reach: Reach = None
 
 
 class StepWriter:
@@ -73,20 +82,34 @@ class StepWriter:
 
         The clauses of a ``for all`` are repeated for each element, and an ``and`` is split into several steps.
         """
-        for clause in clauses:
+        numbers = part_numbers(clauses)
+        count = count_of_parts(clauses, numbers)
+        for clause, number in zip(clauses, numbers, strict=True):
+            inner = (*scope, (PART, number)) if count > 1 and is_when_clause(clause) else scope
             match clause:
                 case ForAll():
                     for index, element in enumerate(self._binder.elements(clause.in_set, values)):
-                        inner = (*scope, (clause.iri, index))
-                        yield from self.steps(clause.clauses, {**values, clause.variable: element}, inner)
-                case Exists() if self._binder.is_one_choice(clause, values):
-                    yield from self.steps(clause.clauses, self._binder.some(clause, values), scope)
-                case Junction(operator="and"):
-                    yield from self.steps(clause.operands, values, scope)
+                        own = {**values, clause.variable: element}
+                        yield from self.steps(clause.clauses, own, (*inner, (clause.iri, index)))
                 case BehaviourClause() | EventClause():
-                    yield self._step("when", clause, values, scope)
+                    yield self._step("when", clause, values, inner)
                 case _:
-                    yield self._step(clause.role, clause, values, scope)
+                    yield from self._conditions(clause, values, scope, _reach(clause.role, number, count))
+
+    def _conditions(self, clause: Clause, values: Values, scope: Scope, reach: Reach) -> Iterator[Step]:
+        """Yield the steps of a Given or Then clause."""
+        match clause:
+            case Exists() if self._binder.is_one_choice(clause, values):
+                values, parts = self._binder.some(clause, values), clause.clauses
+            case Junction(operator="and"):
+                parts = clause.operands
+            case ForAll() | BehaviourClause() | EventClause():
+                raise TypeError("a When clause cannot be part of a group")
+            case _:
+                yield self._step(clause.role, clause, values, scope, reach)
+                return
+        for part in parts:
+            yield from self._conditions(part, values, scope, reach)
 
     def definition(self, event: DefinedEvent, values: Values) -> str:
         """Return the definition of an event as a sentence; empty if its number of seconds has no valid value."""
@@ -128,9 +151,16 @@ class StepWriter:
         """Return a value as written inside the quotes of a sentence."""
         return word(self._binder.filler(value))
 
-    def _step(self, role: str, clause: Clause, values: Values, scope: Scope) -> Step:
+    def _step(self, role: str, clause: Clause, values: Values, scope: Scope, reach: Reach = None) -> Step:
         statement = self._binder.bind(clause, values)
-        return Step(role.capitalize(), sentence(statement), clause.iri, role, statement, (clause, values), scope)
+        return Step(role.capitalize(), sentence(statement), clause.iri, role, statement, (clause, values), scope, reach)
+
+
+def _reach(role: str, number: int, count: int) -> Reach:
+    """Return the parts that a clause is about. ``number`` is that of its part, ``count`` that of all parts."""
+    if role == "given":
+        return (number, count - 1) if 0 < number < count else None
+    return (0, number) if number < count - 1 else None
 
 
 def _uses_named(clause: Clause) -> bool:

@@ -109,7 +109,7 @@ class BehaviourClause:
     - ``node``: the node of a behaviour tree that executes it, if any.
     - ``emits``: maps the behaviour's own events (``pick-end``) to events of the model, in written order.
     - ``together``: the clause of the behaviour at the same time as which it is executed (``meanwhile``), if any.
-    - ``has_siblings``: true if its ``When`` has several behaviours.
+    - ``has_siblings``: true if its template has several behaviours.
     """
 
     iri: Iri

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.catalog.coordination import each_emitter
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.monitor.trace import OTHERS
 
@@ -135,9 +136,10 @@ def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], state
 def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list[float]:
     """Return the times (s) at which a log reports an event (CURIE), in order.
 
-    A text reports it by the name of the event or of its ``emitter``, with the usual decorations (``evt-pick-end``).
+    A text reports it by the name of the event or of one that its ``emitter`` states, with the usual decorations
+    (``evt-pick-end``).
     """
-    names = [local_name(event), emitter]
+    names = [local_name(event), *each_emitter(emitter)]
     return [one.time for one in texts if one.text == event or inner_event(one.text.strip(), names) is not None]
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.coordination import each_emitter
 from robbdd_tools.judging.parsed_sentences import fluent_pattern, read_step
 from robbdd_tools.judging.policies import with_policies
 from robbdd_tools.monitor.compound import definition_of
@@ -54,7 +55,7 @@ def is_free_text(statement: Statement | None, text: str) -> bool:
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
     """Return a clause with the policies of the scenario's execution and the events of the clause's iterations."""
     found = with_policies(clause, spec)
-    return found if known is None else _in_iterations(found, known)
+    return found if known is None else _in_iterations(found, known, iterations_of_events(spec))
 
 
 def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
@@ -90,8 +91,36 @@ def behaviour_calls(spec: ScenarioSpec) -> list[tuple[BehaviourCall, ClauseSpec]
 
 
 def iteration_of(known: ClauseSpec | None) -> int:
-    """Return the iteration in which a When clause expects its event; 0 for any iteration."""
+    """Return the iteration of a behaviour; 0 for any iteration."""
     return known.iterations[0] if known is not None and known.iterations else 0
+
+
+def iterations_of_events(spec: ScenarioSpec) -> Mapping[str, Collection[int]]:
+    """Map events to the iterations in which behaviours emit them.
+
+    Events that may occur in every iteration, such as those of the scenario itself, are left out.
+    """
+    executed: dict[str, set[int]] = {}
+    for call, clause in behaviour_calls(spec):
+        if call.part and clause.iterations:
+            executed.setdefault(call.part, set()).add(clause.iterations[0])
+    found: dict[str, set[int]] = {}
+    for event, emitters in spec.events.items() if executed else ():
+        parts = [one.partition(" ")[0] for one in each_emitter(emitters)]
+        if all(part in executed for part in parts):
+            found[event] = set().union(*(executed[part] for part in parts))
+    return found
+
+
+def iteration_of_event(event: str, known: ClauseSpec | None, spec: ScenarioSpec) -> int:
+    """Return the iteration in which a When clause expects an event; 0 for any iteration.
+
+    It is the first one in the scope of the clause in which a behaviour emits the event, if there is any.
+    """
+    if known is None or not known.iterations:
+        return 0
+    first, last = known.iterations[0], known.iterations[-1]
+    return min((one for one in iterations_of_events(spec).get(event, ()) if first <= one <= last), default=first)
 
 
 def _with_iris(statement: Statement | None, known: ClauseSpec) -> Statement | None:
@@ -110,9 +139,9 @@ def _named(clause: Clause, iris: Iterator[str]) -> Clause:
     return replace(clause, iri=next(iris, ""))
 
 
-def _in_iterations(clause: Clause, known: ClauseSpec) -> Clause:
+def _in_iterations(clause: Clause, known: ClauseSpec, emitting: Mapping[str, Collection[int]]) -> Clause:
     if isinstance(clause, Junction):
-        return replace(clause, operands=tuple(_in_iterations(operand, known) for operand in clause.operands))
+        return replace(clause, operands=tuple(_in_iterations(operand, known, emitting) for operand in clause.operands))
     if clause.time is None:
         return clause
-    return replace(clause, time=in_iterations(clause.time, known.role, known.iterations))
+    return replace(clause, time=in_iterations(clause.time, known.role, known.iterations, emitting))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.last_iteration import LAST
@@ -183,22 +185,33 @@ def closing_time(constraint: TimeConstraint, trace: Trace) -> float | None:
     return times[max(constraint.number - 1, 0)] + (horizon or 0.0)
 
 
-def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
+def in_iterations(
+    constraint: TimeConstraint,
+    role: str,
+    iterations: tuple[int, ...],
+    emitting: Mapping[str, Collection[int]] = MappingProxyType({}),
+) -> TimeConstraint:
     """Return a time constraint with the occurrences of events to which a clause refers.
 
     ``iterations`` are the first and the last iteration of the clause's scope; empty if the clause is not in a loop. An
     interval extends over the whole scope. Any other constraint of a Given or When clause (``role``) refers to the first
     iteration, and that of a Then clause to the last one, unless it selects occurrences in the
-    scope itself (see "Occurrences" in ``docs/semantics.md``).
+    scope itself (see "Occurrences" in ``docs/semantics.md``). ``emitting`` maps an event to the iterations in which it
+    is emitted, if these are not all: only they count for it, unless the scope contains none of them.
     """
     if not iterations:
         return constraint
     first, last = iterations[0], iterations[-1]
+
+    def own(event: str) -> tuple[int, int]:
+        found = [number for number in emitting.get(event, ()) if first <= number <= last]
+        return (min(found), max(found)) if found else (first, last)
+
     if isinstance(constraint, During):
-        return replace(constraint, iterations=(first, last))
+        return replace(constraint, iterations=(own(constraint.start)[0], own(constraint.end)[1]))
     if constraint.which:
         return replace(constraint, scope=(first, last))
-    return replace(constraint, iteration=last if role == "then" else first)
+    return replace(constraint, iteration=own(constraint.event)[1 if role == "then" else 0])
 
 
 def _pending(constraint: TimeConstraint, trace: Trace) -> NoWindow | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.when_paths import when_path
+from robbdd_tools.syntax.when_paths import part_path, when_path
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -63,19 +63,23 @@ class _Walk:
     offset: int
 
     def body(self, body: tree.Body, path: str) -> Iterator[PlacedClause]:
-        yield from self.top(body.given, "given", path)
-        if body.when is not None:
-            for number, step in enumerate(body.when.steps):
+        for number, part in enumerate(body.parts):
+            yield from self._part(part, part_path(path, number))
+
+    def _part(self, part: tree.Part, path: str) -> Iterator[PlacedClause]:
+        yield from self.top(part.given, "given", path)
+        if part.when is not None:
+            for number, step in enumerate(part.when.steps):
                 inner, use = when_path(path, number), step.behaviour
                 yield from self.occurrences(step.events, inner)
                 behaviour = self._placed("when-bhv", inner, use, use.name.text)
                 yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))
-        if body.for_all is not None:
+        if part.for_all is not None:
             inner = f"{path}.all"
-            yield self._placed("forall", inner, body.for_all, FOR_ALL)
+            yield self._placed("forall", inner, part.for_all, FOR_ALL)
             if inner.count(".") <= MAX_NESTED:
-                yield from self.body(body.for_all.body, inner)
-        yield from self.top(body.then, "then", path)
+                yield from self.body(part.for_all.body, inner)
+        yield from self.top(part.then, "then", path)
 
     def top(self, expression: tree.Expression | None, role: str, path: str) -> Iterator[PlacedClause]:
         if expression is not None:

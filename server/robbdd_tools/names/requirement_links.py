@@ -166,7 +166,8 @@ def _then_of(root: tree.ChunkTree | None, name: str) -> Iterator[tree.Expression
 
 
 def _then_in(body: tree.Body) -> Iterator[tree.Expression]:
-    if body.for_all is not None:
-        yield from _then_in(body.for_all.body)
-    if body.then is not None:
-        yield body.then
+    for part in body.parts:
+        if part.for_all is not None:
+            yield from _then_in(part.for_all.body)
+        if part.then is not None:
+            yield part.then

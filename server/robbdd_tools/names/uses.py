@@ -110,6 +110,9 @@ class _Collector:
     def visit(self, node: tree.Node | None, bound: Mapping[str, Bound], *, repeated: bool) -> None:
         match node:
             case tree.Body():
+                for part in node.parts:
+                    self.visit(part, bound, repeated=repeated)
+            case tree.Part():
                 behaviours = () if node.when is None else node.when.behaviours
                 for part in (node.given, *behaviours, node.for_all, node.then):
                     self.visit(part, bound, repeated=repeated)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.coordination import DEFINED, END, EXTERNAL, START, emitter
+from robbdd_tools.catalog.coordination import DEFINED, END, EXTERNAL, START, emitter, joined
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.acceptance_model import (
@@ -17,6 +17,7 @@ from robbdd_tools.graph.acceptance_model import (
     every_clause,
     named_events,
 )
+from robbdd_tools.graph.clause_parts import whens_of
 
 if TYPE_CHECKING:
     from robbdd_tools.run.related_scenarios import Linked
@@ -30,8 +31,9 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     the behaviour event with the same name (``inner_event``). In a scenario that is ``linked`` to a node of a behaviour
     tree, that node emits the duration, unless it is the root.
 
-    If a When has several behaviours, their events are distinguished by the IRIs of their clauses. An event that ends
-    one of them and starts another is emitted by the first. A name that fits events of several behaviours fits none. An
+    If a template has several behaviours, their events are distinguished by the IRIs of their clauses. An event that
+    ends one behaviour of a When and starts another one of it is emitted by the first, and a name that fits events of
+    several behaviours of a When fits none. In different parts of a template, behaviours may emit the same event. An
     awaited event without an emitter is external: only a log can report it. An event that the template defines by
     conditions is found in the trace.
     """
@@ -41,16 +43,21 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
         bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
     clauses = tuple(every_clause((*template.clauses, *variant.clauses)))
     behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
-    limits: dict[Iri, str] = {}
-    for clause in behaviours:
-        first, last = _limits(clause, linked)
-        if not clause.has_siblings:
-            bound |= {clause.start: first, clause.end: last}
-            continue
-        for event, name in ((clause.start, first), (clause.end, last)):
-            limits.setdefault(event, name)
-    bound |= limits
-    _bind_inner(bound, clauses, behaviours, linked)
+    limits: dict[Iri, list[str]] = {}
+    whens = list(whens_of((*template.clauses, *variant.clauses)))
+    for when in whens:
+        own: dict[Iri, str] = {}
+        for clause in when:
+            first, last = _limits(clause, linked)
+            if not clause.has_siblings:
+                own |= {clause.start: first, clause.end: last}
+                continue
+            for event, name in ((clause.start, first), (clause.end, last)):
+                own.setdefault(event, name)
+        for event, name in own.items():
+            limits.setdefault(event, []).append(name)
+    bound |= {event: joined(names) for event, names in limits.items()}
+    _bind_inner(bound, clauses, whens, linked)
     if any(clause.has_siblings for clause in behaviours):
         for clause in clauses:
             if isinstance(clause, EventClause):
@@ -74,20 +81,33 @@ def _emitter(moment: str, clause: BehaviourClause, linked: Linked | None) -> str
 
 
 def _bind_inner(
-    bound: dict[Iri, str], clauses: Iterable[Clause], behaviours: Iterable[BehaviourClause], linked: Linked | None
+    bound: dict[Iri, str],
+    clauses: Iterable[Clause],
+    whens: Iterable[tuple[BehaviourClause, ...]],
+    linked: Linked | None,
 ) -> None:
     """Add the emitters of events that a model states by ``emits``, or names as an event of a behaviour."""
-    stated: dict[Iri, str] = {}
-    emitted: dict[str, set[str]] = {}
-    for clause in behaviours:
-        events = load_catalog().behaviours[clause.behaviour].events
-        for moment in events:
-            emitted.setdefault(moment, set()).add(_emitter(moment, clause, linked))
-        stated |= {event: _emitter(moment, clause, linked) for moment, event in clause.emits if moment in events}
-    single = {moment: next(iter(names)) for moment, names in emitted.items() if len(names) == 1}
+    stated: dict[Iri, list[str]] = {}
+    emitted: dict[str, list[str]] = {}
+    ambiguous: set[str] = set()
+    for when in whens:
+        own: dict[str, set[str]] = {}
+        said: dict[Iri, str] = {}
+        for clause in when:
+            events = load_catalog().behaviours[clause.behaviour].events
+            for moment in events:
+                own.setdefault(moment, set()).add(_emitter(moment, clause, linked))
+            said |= {event: _emitter(moment, clause, linked) for moment, event in clause.emits if moment in events}
+        for event, name in said.items():
+            stated.setdefault(event, []).append(name)
+        for moment, names in own.items():
+            emitted.setdefault(moment, []).extend(names)
+            if len(names) > 1:
+                ambiguous.add(moment)
+    known = {moment: joined(names) for moment, names in emitted.items() if moment not in ambiguous}
     for clause in clauses:
         for event in named_events(clause):
-            moment = inner_event(event, single)
-            name = stated.get(event) or (None if moment is None else single[moment])
+            moment = inner_event(event, known)
+            name = joined(stated[event]) if event in stated else None if moment is None else known[moment]
             if name is not None:
                 bound.setdefault(event, name)

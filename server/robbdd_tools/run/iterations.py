@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from robbdd_tools.gherkin.steps import Scope, Step
+from robbdd_tools.gherkin.steps import Reach, Scope, Step
 from robbdd_tools.protocol.clauses import BehaviourCall
 
 
@@ -13,12 +13,24 @@ def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
     return list(dict.fromkeys(step.scope for step in steps if isinstance(step.statement, BehaviourCall)))
 
 
-def iterations_of(scope: Scope, behaviours: Sequence[Scope]) -> tuple[int, ...]:
-    """Return the numbers (from 1) of the first and the last iteration in a scope.
+def iterations_of(scope: Scope, behaviours: Sequence[Scope], reach: Reach = None) -> tuple[int, ...]:
+    """Return the numbers (from 1) of the first and the last iteration in the scope and the reach of a step.
 
     If the scope contains no behaviour, the nearest outer scope that contains one is used. The result is empty for a
-    scenario with a single iteration, because all events of the scenario belong to it.
+    scenario with a single iteration, because all events of the scenario belong to it. If the parts in its reach contain
+    no behaviour, because all their loops are over empty sets, the number is that of no iteration.
     """
+    if reach is not None:
+        first, last = reach
+        depth = len(scope)
+        reached = [
+            number
+            for number, other in enumerate(behaviours, start=1)
+            if other[:depth] == scope and first <= other[depth][1] <= last
+        ]
+        if not reached:
+            return len(behaviours) + 1, len(behaviours) + 1
+        return (reached[0], reached[-1]) if len(behaviours) > 1 else ()
     if len(behaviours) < 2:
         return ()
     while True:

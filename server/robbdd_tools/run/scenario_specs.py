@@ -24,6 +24,7 @@ from robbdd_tools.graph.acceptance_model import (
     Variant,
 )
 from robbdd_tools.graph.acceptance_model import DefinedEvent as ModelEvent
+from robbdd_tools.graph.clause_parts import count_of_parts, part_numbers
 from robbdd_tools.graph.read.clauses import named_elements, names_in_events, used_names
 from robbdd_tools.graph.read.named_predicates import required_parts
 from robbdd_tools.monitor.policy import Observation, Policy
@@ -150,7 +151,9 @@ class SpecWriter:
             seed=scenario_seed(self._seed, variant.iri, scenario.number),
             scene=self._scene(shared, variant.scene, scenario.values),
             events=shared.events,
-            clauses=tuple(self._clause(line, step, iterations_of(step.scope, scopes)) for line, step in steps),
+            clauses=tuple(
+                self._clause(line, step, iterations_of(step.scope, scopes, step.reach)) for line, step in steps
+            ),
             execution=self.execution,
             model=self._name,
             chosen_instance=shared.instance,
@@ -210,13 +213,14 @@ class SpecWriter:
         extra = elements_of((*values.values(), *shared.named))
         places: dict[str, str] = {}
         config: list[ConfigSpec] = []
-        for fluent, inner in _givens(self._model, shared.clauses, values):
+        for fluent, inner, is_later in _givens(self._model, shared.clauses, values):
             if fluent.conditions:
                 continue
             if fluent.predicate == "located-at":
                 thing, place = (_value(fluent.arguments[slot], inner) for slot in ("object", "workspace"))
                 if isinstance(thing, Iri) and isinstance(place, Iri):
-                    places[self._curie(thing)] = self._curie(place)
+                    name = self._curie(thing)
+                    places[name] = places[name] if is_later and name in places else self._curie(place)
             elif fluent.predicate == "has-config":
                 config += self._config(fluent, inner)
         objects = self._members(shared.objects, extra, "object")
@@ -263,22 +267,28 @@ class SpecWriter:
         return self._curie(cell) if isinstance(cell, Iri) else " ".join(str(cell).split())
 
 
-def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values) -> Iterator[tuple[Fluent, Values]]:
-    """Yield the unconditional fluents of ``Given``.
+def _givens(
+    model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values, *, is_later: bool = False
+) -> Iterator[tuple[Fluent, Values, bool]]:
+    """Yield the unconditional fluents of ``Given``, and whether they belong to a later part of a body.
 
-    If the world contradicts one of them from the start, the scenario would test nothing.
+    If the world contradicts one of them from the start, the scenario would test nothing. A thing that has been moved
+    by an earlier part does not start where a later part expects it.
     """
-    for clause in clauses:
+    numbers = part_numbers(clauses)
+    count = count_of_parts(clauses, numbers)
+    for clause, number in zip(clauses, numbers, strict=True):
+        later = is_later or 0 < number < count
         match clause:
             case Fluent(role="given"):
-                yield clause, values
-                yield from ((part, values) for part in required_parts(clause))
+                yield from ((part, values, later) for part in (clause, *required_parts(clause)))
             case Junction(operator="and"):
-                yield from _givens(model, clause.operands, values)
+                yield from _givens(model, clause.operands, values, is_later=later)
             case ForAll():
                 elements = values.get(clause.in_set, model.sets.get(clause.in_set, ()))
                 for element in elements if isinstance(elements, tuple) else (elements,):
-                    yield from _givens(model, clause.clauses, {**values, clause.variable: element})
+                    inner = {**values, clause.variable: element}
+                    yield from _givens(model, clause.clauses, inner, is_later=later)
             case _:
                 pass
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from robbdd_tools.syntax.predicate_tree import NamedUse, PhraseUse
@@ -214,13 +214,29 @@ class ForAll(Node):
 
 
 @dataclass(frozen=True, slots=True)
-class Body(Node):
+class Part(Node):
     """Given, then ``When`` or ``for all``, then Then."""
 
     given: Expression | None
     when: When | None
     for_all: ForAll | None
     then: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class Body(Node):
+    """Parts that are executed one after the other; at least one."""
+
+    parts: tuple[Part, ...]
+
+    @property
+    def behaviours(self) -> Iterator[BehaviourUse]:
+        """The behaviours at any depth in written order."""
+        for part in self.parts:
+            if part.when is not None:
+                yield from part.when.behaviours
+            if part.for_all is not None:
+                yield from part.for_all.body.behaviours
 
 
 @dataclass(frozen=True, slots=True)

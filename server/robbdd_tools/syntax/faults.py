@@ -33,14 +33,17 @@ _RULE_WORDS = {
 _EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
 _STARTS = frozenset({"import", "ns"})
 _PLACES = {
-    "Given": "'Given:' must come before 'When:', 'for all' and 'Then:'",
-    "When": "'When:' must come after 'Given:' and before 'Then:'",
-    "for all": "'for all' must come after 'Given:' and before 'Then:', instead of 'When:'",
+    "Given": "'Given:' must come before 'When:' or 'for all'",
+    "When": "'When:' must come after the clauses of 'Given:' or 'Then:', or after 'for all'",
+    "for all": "'for all' is written instead of 'When:', which is inside its braces",
     "Then": "'Then:' must come after 'When:' or 'for all'",
 }
 """Required order of the parts of a scenario, which users often get wrong."""
 _UNJOINED = "clauses joined by '{0}' need parentheses around all of them: '( … {0} … )'"
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
+_EMPTY = re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z")
+_GIVEN = re.compile(r"(?<![\w\-.])(Given)\s*:")
+_NOTHING = "nothing is written between '{0}:' and '{1}': write what belongs to '{0}:' below it, or remove it"
 # The keyword of a part out of order is read as a clause name; these are the tokens then missing after it.
 _AS_NAMES = {
     "holds": re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z"),
@@ -94,8 +97,15 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
 
 
 def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
-    """Return the fault of a scenario part that is out of order."""
+    """Return the fault of a scenario part that is out of order, or without what belongs to it."""
     part = _PART.match(text, rejected.offset)
+    label = _EMPTY.search(text, 0, rejected.offset)
+    if part is not None and label is not None:
+        return SyntaxFault(Span(*label.span(1)), _NOTHING.format(label[1], "for all" if part[0] == "for" else part[0]))
+    if text[rejected.offset : rejected.offset + 1] in ("", "}") and rejected.expected.literals >= {"When", "for"}:
+        given = list(_GIVEN.finditer(text, 0, rejected.offset))
+        if given and "Given" not in rejected.expected.literals:
+            return SyntaxFault(Span(*given[-1].span(1)), _PLACES["Given"])
     if part is None and len(rejected.expected.literals) == 1:
         (missed,) = rejected.expected.literals
         as_name = _AS_NAMES.get(missed)

@@ -9,7 +9,7 @@ behaviour.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import chain, count
 
 from robbdd_tools.base.document import Span
@@ -24,6 +24,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Expression,
     Fluent,
     Negation,
+    Part,
     Template,
     TextClause,
     Variant,
@@ -40,7 +41,8 @@ def unnamed_at(span: Span) -> Name:
 
 def complete_template(template: Template) -> Template:
     """Return a template with all clauses and behaviours named, and with durations where the clauses imply them."""
-    namer = _Namer(template.name.text, frozenset(_names(template.body)))
+    behaviours = {use.name.text for use in template.body.behaviours}
+    namer = _Namer(template.name.text, frozenset(_names(template.body)), behaviours)
     body = namer.body(template.body, "")
     duration = template.duration
     written, completed = _behaviour(template.body), _behaviour(body)
@@ -61,17 +63,25 @@ def complete_variant(variant: Variant) -> Variant:
 class _Namer:
     owner: str
     taken: frozenset[str]
+    behaviours: set[str] = field(default_factory=set[str])
 
     def body(self, body: Body, prefix: str) -> Body:
-        inner = body.for_all
+        parts = (
+            self._part(part, f"{prefix}part{number}-" if number > 1 else prefix, is_alone=len(body.parts) == 1)
+            for number, part in enumerate(body.parts, start=1)
+        )
+        return replace(body, parts=tuple(parts))
+
+    def _part(self, part: Part, prefix: str, *, is_alone: bool) -> Part:
+        inner = part.for_all
         if inner is not None:
             inner = replace(inner, body=self.body(inner.body, f"{prefix}each-"))
         return replace(
-            body,
-            given=self.clauses(body.given, f"{prefix}given"),
-            when=None if body.when is None else self._when(body.when, body),
+            part,
+            given=self.clauses(part.given, f"{prefix}given"),
+            when=None if part.when is None else self._when(part.when, part if is_alone else None),
             for_all=inner,
-            then=self.clauses(body.then, f"{prefix}then"),
+            then=self.clauses(part.then, f"{prefix}then"),
         )
 
     def clauses(self, expression: Expression | None, role: str) -> Expression | None:
@@ -96,34 +106,34 @@ class _Namer:
             case _:
                 return expression
 
-    def _when(self, when: When, body: Body) -> When:
-        taken = {use.name.text for use in when.behaviours}
-        first = self._behaviour(when.behaviour, taken)
-        if first.duration is None and not when.more:
-            first = replace(first, duration=_duration(first, body))
-        more = tuple(replace(step, behaviour=self._behaviour(step.behaviour, taken)) for step in when.more)
+    def _when(self, when: When, alone: Part | None) -> When:
+        """Return a When with all names. ``alone`` is its part of the body if there is no other one."""
+        first = self._behaviour(when.behaviour)
+        if first.duration is None and not when.more and alone is not None:
+            first = replace(first, duration=_duration(first, alone))
+        more = tuple(replace(step, behaviour=self._behaviour(step.behaviour)) for step in when.more)
         return replace(when, behaviour=first, more=more)
 
-    def _behaviour(self, use: BehaviourUse, taken: set[str]) -> BehaviourUse:
+    def _behaviour(self, use: BehaviourUse) -> BehaviourUse:
         if use.name.text:
             return use
         base = f"{self.owner}-{use.action.word}"
-        free = next(name for name in chain([base], (f"{base}-{number}" for number in count(2))) if name not in taken)
-        taken.add(free)
+        names = chain([base], (f"{base}-{number}" for number in count(2)))
+        free = next(name for name in names if name not in self.behaviours)
+        self.behaviours.add(free)
         return replace(use, name=replace(use.name, text=free))
 
 
 def _behaviour(body: Body) -> BehaviourUse | None:
     """Return the behaviour of a body or its nested bodies, if there is only one."""
-    if body.when is not None:
-        return None if body.when.more else body.when.behaviour
-    return None if body.for_all is None else _behaviour(body.for_all.body)
+    behaviours = list(body.behaviours)
+    return behaviours[0] if len(behaviours) == 1 else None
 
 
-def _duration(behaviour: BehaviourUse, body: Body) -> During | None:
-    before = [time.event for time in _times(body.given) if isinstance(time, Before)]
-    after = [time.event for time in _times(body.then) if isinstance(time, After)]
-    while_it_lasts = [time for time in _times(body.then) if isinstance(time, During)]
+def _duration(behaviour: BehaviourUse, part: Part) -> During | None:
+    before = [time.event for time in _times(part.given) if isinstance(time, Before)]
+    after = [time.event for time in _times(part.then) if isinstance(time, After)]
+    while_it_lasts = [time for time in _times(part.then) if isinstance(time, During)]
     events = load_catalog().behaviours[behaviour.action.word].events
     start = _bound(events, events[0], before, [time.start for time in while_it_lasts])
     end = _bound(events, events[-1], after, [time.end for time in while_it_lasts])
@@ -176,8 +186,9 @@ def _names(node: Body | Expression | None) -> Iterator[str]:
             for operand in node.operands:
                 yield from _names(operand)
         case Body():
-            yield from _names(node.given)
-            yield from _names(node.for_all and node.for_all.body)
-            yield from _names(node.then)
+            for part in node.parts:
+                yield from _names(part.given)
+                yield from _names(part.for_all and part.for_all.body)
+                yield from _names(part.then)
         case _:
             pass

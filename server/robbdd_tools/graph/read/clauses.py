@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
@@ -23,6 +23,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
     Variant,
 )
+from robbdd_tools.graph.clause_parts import part_numbers, with_siblings
 from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
 from robbdd_tools.graph.rdf.vocabulary import (
     EVENT_LIST,
@@ -53,7 +54,8 @@ class ClauseReader:
 
     def clauses(self, owner: str, term: str = "bdd:has-clause", inside: tuple[str, ...] = ()) -> tuple[Clause, ...]:
         """Return the clauses in the list ``term`` of a node ``owner``, in order."""
-        return _linked(tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term)))
+        found = _checked(tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term)))
+        return found if inside else with_siblings(found)
 
     def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
         """Return one clause. ``inside`` are the nodes that contain the clause, outermost first."""
@@ -186,18 +188,15 @@ class ClauseReader:
         return self.records.one(iri, HORIZON_VARIABLE)
 
 
-def _linked(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
-    """Return clauses in which the behaviours of a When with several of them are marked.
-
-    Raises ``Incomplete`` if a behaviour is together with another one than that before it.
-    """
-    behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
-    for before, clause in zip((None, *behaviours), behaviours, strict=False):
-        if clause.together is not None and (before is None or before.iri != clause.together):
-            raise Incomplete(f"{clause.iri} is executed together with another behaviour than that before it")
-    if len(behaviours) < 2:
-        return clauses
-    return tuple(replace(one, has_siblings=True) if isinstance(one, BehaviourClause) else one for one in clauses)
+def _checked(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
+    """Return clauses. Raises ``Incomplete`` if a behaviour is together with another one than that before it."""
+    before: tuple[int, Iri] | None = None
+    for clause, number in zip(clauses, part_numbers(clauses), strict=True):
+        if isinstance(clause, BehaviourClause):
+            if clause.together is not None and before != (number, clause.together):
+                raise Incomplete(f"{clause.iri} is executed together with another behaviour than that before it")
+            before = number, clause.iri
+    return clauses
 
 
 def names_in_events(events: Iterable[DefinedEvent]) -> Iterator[Iri]:

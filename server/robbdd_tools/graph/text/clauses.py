@@ -23,6 +23,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
+from robbdd_tools.graph.clause_parts import count_of_parts, part_numbers
 from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.rdf.vocabulary import STATES
 from robbdd_tools.graph.read.clauses import ClauseReader
@@ -32,7 +33,7 @@ from robbdd_tools.graph.text.property_text import set_reference
 from robbdd_tools.graph.text.requirements import verified
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
 from robbdd_tools.protocol.time_words import occurrence_words
-from robbdd_tools.syntax.when_paths import when_path
+from robbdd_tools.syntax.when_paths import part_path, when_path
 
 _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 
@@ -41,28 +42,39 @@ _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 class ClauseText:
     """Writes the clauses of one owner, which is a template or a variant. ``owner`` is its qualified name.
 
-    ``variables`` maps the available variables to their references. A node without a name in the text gets an IRI made
-    of its path, as in a graph that is built from the text.
+    ``variables`` maps the available variables to their references, and ``bound`` those of quantifiers to their names.
+    A node without a name in the text gets an IRI made of its path, as in a graph that is built from the text.
     """
 
     names: Names
     owner: str
     namespace: str
     variables: dict[str, str] = field(default_factory=dict[str, str])
+    bound: dict[str, str] = field(default_factory=dict[str, str])
 
     def body(self, clauses: Sequence[Clause], path: str = "") -> str:
-        """Return the text of Given, of When or for all, and of Then. Raises ``Incomplete`` if there is no When."""
-        loops = [clause for clause in clauses if isinstance(clause, ForAll)]
-        parts = list(_when_parts(clauses))
+        """Return the text of the parts of a body. Raises ``Incomplete`` if there is no When, or a Given after all."""
+        numbers = part_numbers(clauses)
+        count = count_of_parts(clauses, numbers)
+        if not count:
+            raise Incomplete("it has neither a When with a behaviour nor a 'for all'")
+        if count == 1:
+            return self._part(clauses, path)
+        if max(numbers) >= count:
+            raise Incomplete("it has a Given clause after its last When")
+        parts = ([c for c, own in zip(clauses, numbers, strict=True) if own == number] for number in range(count))
+        return "".join(self._part(part, part_path(path, number)) for number, part in enumerate(parts))
+
+    def _part(self, clauses: Sequence[Clause], path: str) -> str:
+        loop = next((clause for clause in clauses if isinstance(clause, ForAll)), None)
         given = self.conditions(clauses, "given", path)
-        if len(loops) == 1 and not parts:
-            middle = self._for_all(loops[0], f"{path}.all")
-        elif parts and not loops:
-            inner = [line for number, part in enumerate(parts) for line in self._when_part(part, number, path)]
-            middle = "When:\n" + indented("\n".join(inner))
+        if loop is not None:
+            middle = self._for_all(loop, f"{path}.all")
         else:
-            raise Incomplete("its When does not have either behaviours or one 'for all'")
-        return "".join(f"{part}\n" for part in (given, middle, self.conditions(clauses, "then", path)) if part)
+            parts = enumerate(_when_parts(clauses))
+            inner = [line for number, part in parts for line in self._when_part(part, number, path)]
+            middle = "When:\n" + indented("\n".join(inner))
+        return "".join(f"{text}\n" for text in (given, middle, self.conditions(clauses, "then", path)) if text)
 
     def conditions(self, clauses: Iterable[Clause], role: str, path: str = "") -> str:
         """Return ``Given: …`` or ``Then: …``, or an empty text if the role has no clause."""
@@ -206,9 +218,15 @@ class ClauseText:
         return self.variables.get(node) or set_reference(self.names, node)
 
     def _bind(self, variable: Iri) -> str:
-        """Declare the variable of a quantifier, so that clauses inside the quantifier can refer to it."""
+        """Declare the variable of a quantifier, so that clauses inside the quantifier can refer to it.
+
+        Several quantifiers may have one variable.
+        """
+        if variable in self.bound:
+            return self.bound[variable]
         name = self.names.declare(variable, "each", owner=self.owner, namespace=self.namespace, before="var-")
         self.variables[variable] = f"<{name}>"
+        self.bound[variable] = name
         return name
 
     def _for_all(self, loop: ForAll, path: str) -> str:

@@ -222,8 +222,9 @@ def _add_template(frame: Frame, selected: PropertySets, template: tree.Template,
         tasks[node] = task
     add_verified(frame, node, template.verifies)
     _add_variables(frame, node, template)
-    writer = ClauseWriter(frame, selected, namespace_of(node, template.name.text), template.name.text, scenario)
-    sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))
+    name, body = template.name.text, template.body
+    writer = ClauseWriter(frame, selected, namespace_of(node, name), name, scenario, next(body.behaviours, None))
+    sink.add(node, "bdd:has-clause", sink.make_list(writer.body(body)))
     writer.events(node, template.events)
 
 

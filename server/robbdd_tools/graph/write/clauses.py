@@ -23,7 +23,7 @@ from robbdd_tools.graph.write.requirements import add_verified
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.when_paths import when_path
+from robbdd_tools.syntax.when_paths import part_path, when_path
 
 if TYPE_CHECKING:
     from rdflib import URIRef
@@ -40,8 +40,9 @@ class ClauseWriter:
     """Writes the clauses of one owner, which is a template or a variant.
 
     ``namespace`` is the namespace of the owner, and ``owner`` is its qualified name (``story.variant``). ``scenario``
-    is the node of the template's scenario. A node without a name is named after its path, which consists of the kind,
-    the owner and the steps to the node. They are joined by dots, because no written name contains a dot.
+    is the node of the template's scenario, and ``first`` its first behaviour. A node without a name is named after its
+    path, which consists of the kind, the owner and the steps to the node. They are joined by dots, because no written
+    name contains a dot.
     """
 
     frame: Frame
@@ -49,19 +50,24 @@ class ClauseWriter:
     namespace: str
     owner: str
     scenario: str
+    first: tree.BehaviourUse | None = None
 
     @property
     def _sink(self) -> Sink:
         return self.frame.sink
 
     def body(self, body: tree.Body, path: str = "") -> list[Node]:
-        """Write Given, When or for all, and Then. Return their clauses in order."""
-        nodes = self.top(body.given, "given", path)
-        if body.when is not None:
-            nodes += self._when(body.when, path)
-        if body.for_all is not None:
-            nodes += self._for_all(body.for_all, f"{path}.all")
-        return nodes + self.top(body.then, "then", path)
+        """Write Given, When or for all, and Then of each part. Return their clauses in order."""
+        nodes: list[Node] = []
+        for number, part in enumerate(body.parts):
+            inner = part_path(path, number)
+            nodes += self.top(part.given, "given", inner)
+            if part.when is not None:
+                nodes += self._when(part.when, inner)
+            if part.for_all is not None:
+                nodes += self._for_all(part.for_all, f"{inner}.all")
+            nodes += self.top(part.then, "then", inner)
+        return nodes
 
     def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Node]:
         """Write the clauses of one role. The operands of an outermost *and* become separate entries of the list."""
@@ -79,7 +85,7 @@ class ClauseWriter:
         for number, step in enumerate(when.steps):
             inner = when_path(path, number)
             nodes += self.occurrences(step.events, inner)
-            written = self._behaviour(step.behaviour, inner, is_first=step is when)
+            written = self._behaviour(step.behaviour, inner)
             for node in written:
                 if isinstance(step, tree.Further) and step.link == "meanwhile" and together is not None:
                     self._sink.add(node, TOGETHER, together, self.frame.at(step))
@@ -223,7 +229,7 @@ class ClauseWriter:
             node, "bdd:in-set", self.sets.target(self.frame, in_set, quantifier.where), self.frame.at(in_set)
         )
 
-    def _behaviour(self, use: tree.BehaviourUse, path: str, *, is_first: bool) -> list[Node]:
+    def _behaviour(self, use: tree.BehaviourUse, path: str) -> list[Node]:
         behaviour = self.frame.node(f"{self.owner}.{use.name.text}")
         node = self._generated("when-bhv", path)
         scenario = self._sink.iri(self.scenario)
@@ -233,7 +239,7 @@ class ClauseWriter:
         if self._sink.claim_behaviour(behaviour, word.name, self.frame.at(use.name)):
             self._sink.add_types(behaviour, ["bhv:Behaviour", *word.rdf_types], self.frame.at(use.name))
         # The published vocabulary has one behaviour for each scenario.
-        of_scenario = "bhv:of-behaviour" if is_first else FURTHER_BEHAVIOUR
+        of_scenario = "bhv:of-behaviour" if use is self.first else FURTHER_BEHAVIOUR
         self._sink.add(scenario, of_scenario, behaviour, self.frame.at(use.name))
         link_behaviour(self.frame, behaviour, use)
         self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -115,7 +115,7 @@ def _resolved(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Iden
 
 @kept_with_key
 def _named(declaration: Declaration) -> tuple[_Named, ...]:
-    words = dict(_behaviours(declaration.tree.body)) if isinstance(declaration.tree, tree.Template) else {}
+    words = _behaviours(declaration.tree) if isinstance(declaration.tree, tree.Template) else {}
     return tuple(
         _Named(symbol, local_name(symbol), _states(symbol, words))
         for symbol in declaration.symbols
@@ -129,10 +129,6 @@ def _states(symbol: Symbol, words: Mapping[str, str]) -> str | None:
     return words.get(symbol.name) if symbol.kind is SymbolKind.BEHAVIOUR else None
 
 
-def _behaviours(body: tree.Body) -> Iterator[tuple[str, str]]:
-    """Yield the name and the catalog word of each behaviour of a template, including those inside ``for all``."""
-    inner: tree.Body | None = body
-    while inner is not None:
-        if inner.when is not None:
-            yield from ((use.name.text, use.action.word) for use in inner.when.behaviours)
-        inner = None if inner.for_all is None else inner.for_all.body
+def _behaviours(template: tree.Template) -> dict[str, str]:
+    """Return the catalog word of each behaviour of a template by name, including those inside ``for all``."""
+    return {use.name.text: use.action.word for use in template.body.behaviours}
