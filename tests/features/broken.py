@@ -87,6 +87,9 @@ def _paced(setting: str) -> str:
     )
 
 
+_IN_TRAY = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
+_LOOP = "for all ( var part in <parts> ) "
+_MORE = "Behaviour (ns=t) more { duration: from <pick-start> until <place-end> <robot> picks <part> }"
 _TILTED = (
     EVENTS
     + TEMPLATE.replace("<part> is located at <goal>, 0.5", "<part> is tilted less than <most>, 0.5").replace(
@@ -306,7 +309,19 @@ BROKEN: dict[str, list[str]] = {
     "duplicate-name": [
         _declared("Event (ns=t) start\n"),
         _swapped("in-tray", "on-bench"),
+        EVENTS + TEMPLATE.replace("    var goal\n", "    var goal\n    var goal\n") + STORY,
+        EVENTS + TEMPLATE.replace("    var goal\n", "    var goal var part var part\n") + STORY,
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut, object nut, object nut-2"),
+    ],
+    "hidden-variable": [
+        _swapped(_IN_TRAY, f"( var goal exists in <places> ) such that {{ {_IN_TRAY} }}"),
+        _swapped("    Then:\n", f"    {_LOOP}{{ {_LOOP}{{ When: {_MORE} }} }}\n    Then:\n"),
+        _swapped(
+            "scene: <bench_scene>\n",
+            "scene: <bench_scene>\n            Then: ( var part exists in <parts> ) such that { ( "
+            "one: holds(<part> is located at <fetch.goal>, after <end>) and "
+            "two: holds(<fetch.part> is located at <fetch.goal>, after <end>) ) }\n",
+        ),
     ],
     "unused-task": [_declared("Task (ns=t) spare\n")],
     "unused-set": [

@@ -139,6 +139,7 @@ def test_the_clauses_of_the_text_are_those_of_the_graph() -> None:
 def test_a_given_after_the_last_when_cannot_be_written_in_a_template_with_several_parts() -> None:
     graph = built(WHOLE).graph
     head = graph.value(URIRef(f"{T}rounds"), URIRef(expand("bdd:has-clause")))
+    assert head is not None
     clauses = Collection(graph, head)
     clauses.append(clauses[0])
     left = write_model(graph, "model.scene").left_out

@@ -25,6 +25,7 @@ from robbdd_tools.checks.empty_set import empty_set
 from robbdd_tools.checks.execution_fit import execution_fit
 from robbdd_tools.checks.external_system import external_system
 from robbdd_tools.checks.foreign_variable import foreign_variable
+from robbdd_tools.checks.hidden_variable import hidden_variable
 from robbdd_tools.checks.joint_ends import joint_ends
 from robbdd_tools.checks.many_scenarios import many_scenarios
 from robbdd_tools.checks.memo import Kept
@@ -79,6 +80,7 @@ DECLARATION_RULES = (
     empty_duration,
     empty_set,
     foreign_variable,
+    hidden_variable,
     joint_ends,
     many_scenarios,
     missing_value,

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
-from robbdd_tools.checks.finding import listed, removal
+from robbdd_tools.base.removals import removal
+from robbdd_tools.checks.finding import listed
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related
-from robbdd_tools.base.document import Span
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Severity
-    from robbdd_tools.base.document import Document
     from robbdd_tools.names.elements import Site
     from robbdd_tools.syntax.tree import Node
 
@@ -44,21 +42,6 @@ def related_to(site: Site, node: Node, message: str) -> Related:
 def change(site: Site, title: str, node: Node, text: str) -> Fix:
     """Return the fix that replaces a node by ``text``."""
     return Fix(title, (Edit(site.uri, site.span(node), text),))
-
-
-def removal(document: Document, title: str, span: Span) -> Fix:
-    """Return the fix that removes a span. Lines that would become empty are removed, too."""
-    text = document.text
-    start, end = span.start, span.end
-    line_start = document.line_starts[document.position(start).line]
-    line_end = end + len(document.line_text(document.position(end).line)) - document.position(end).column
-    if not text[line_start:start].strip() and not text[end:line_end].strip():
-        start, end = line_start, line_end
-        if text[end : end + 2] == "\r\n":
-            end += 2
-        elif end < len(text):
-            end += 1
-    return Fix(title, (Edit(document.uri, Span(start, end), ""),))
 
 
 def listed(names: list[str]) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.finding import removal
+from robbdd_tools.base.removals import removal
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.base.removals import removal
 from robbdd_tools.catalog.settings import setting_of
-from robbdd_tools.checks.finding import change, finding, removal, written_text
+from robbdd_tools.checks.finding import change, finding, written_text
 from robbdd_tools.graph.write.units import LENGTHS
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk

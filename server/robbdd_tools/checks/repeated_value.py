@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Fix, Severity
-from robbdd_tools.checks.finding import finding, related_to, removal
+from robbdd_tools.base.removals import removal
+from robbdd_tools.checks.finding import finding, related_to
 from robbdd_tools.checks.table_edits import column_removed
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import variable_key

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Fix, Severity
+from robbdd_tools.base.removals import removal
 from robbdd_tools.checks.facts import facts_of
-from robbdd_tools.checks.finding import removal
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

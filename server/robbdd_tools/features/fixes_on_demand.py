@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
-from robbdd_tools.checks.finding import MAX_OFFERED, change, removal
+from robbdd_tools.base.removals import removal
+from robbdd_tools.checks.finding import MAX_OFFERED, change
 from robbdd_tools.checks.table_edits import column_removed
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.fixes import imports_of, reference_at

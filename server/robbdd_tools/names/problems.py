@@ -7,6 +7,7 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
+from robbdd_tools.base.removals import removal
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.nearest import nearest
 from robbdd_tools.names.resolve import define
@@ -45,8 +46,16 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
             message = f"'{path}' is already declared: give one of the two another name"
             related = (Related(uri, span, "the first declaration"),)
             place = other.symbol.span.shifted(other.offset)
-            fixes = () if other.symbol.kind in ROLE_KINDS["Variable"] else tuple(_renamed(file, path, place))
+            is_variable = other.symbol.kind in ROLE_KINDS["Variable"]
+            fixes = tuple(_removed(file, first, other)) if is_variable else tuple(_renamed(file, path, place))
             yield Diagnostic(uri, place, Severity.ERROR, "duplicate-name", message, related, fixes)
+
+
+def _removed(file: FileIndex, first: Declared, other: Declared) -> Iterator[Fix]:
+    """Yield a fix that removes the second declaration of a variable. Under another name, it would lack values."""
+    if first.symbol.kind is other.symbol.kind and other.symbol.span != other.symbol.extent:
+        extent = other.symbol.extent.shifted(other.offset)
+        yield removal(file.document, f"Remove the second declaration of '{other.symbol.name}'", extent)
 
 
 def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
