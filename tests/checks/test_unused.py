@@ -14,6 +14,7 @@ SPARE = "    var spare\n"
     [
         ("Event (ns=t) spare\n", "unused-event"),
         ("Task (ns=t) spare\n", "unused-task"),
+        ("Predicate (ns=t) <one> is-spare in <place>: ( <one> is located at <place> )\n", "unused-predicate"),
         ("const set (ns=t) spare { <parts.bolt> }\n", "unused-set"),
     ],
 )

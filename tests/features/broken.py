@@ -323,6 +323,7 @@ BROKEN: dict[str, list[str]] = {
             "two: holds(<fetch.part> is located at <fetch.goal>, after <end>) ) }\n",
         ),
     ],
+    "unused-predicate": [_declared("Predicate (ns=t) <one> is-put at <place>: ( <one> is located at <place> )\n")],
     "unused-task": [_declared("Task (ns=t) spare\n")],
     "unused-set": [
         _declared("const set (ns=t) spare { <parts.bolt> }\n"),

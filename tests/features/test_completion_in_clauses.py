@@ -1,6 +1,7 @@
 """Completion in clauses: forms only where they fit, fitting phrases first, joined clauses, literals."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -285,3 +286,30 @@ def test_an_execution_offers_the_behaviours_of_the_catalog_in_quotes() -> None:
 def test_a_further_behaviour_is_offered_after_a_behaviour() -> None:
     text = MODEL.replace("    Then:\n", "        $0\n    Then:\n", 1)
     assert {"then", "meanwhile"} <= {item.label for item in at(text)}
+
+
+DEFINED = (
+    "Predicate (ns=t) <one> is-put by <who> at <place>: ( <one> is located at <place> and <one> is held by <who> )\n"
+    "Predicate (ns=t) free-space between <a> to <b>: ( <a> is nearer than 1 m to <b> )\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("before", "phrases"),
+    [
+        ("<part> ", ["is-put by <who> at <place>"]),
+        ("<part> is-p", ["is-put by <who> at <place>"]),
+        ("", ["free-space between <a> to <b>", "<one> is-put by <who> at <place>"]),
+    ],
+)
+def test_the_whole_phrase_of_a_named_predicate_is_offered(before: str, phrases: list[str]) -> None:
+    text = MODEL.replace("Scenario Template", f"{DEFINED}Scenario Template")
+    text = text.replace(IN_TRAY, f"in-tray: holds({before}$0")
+    found = [one for one in at(text) if one.detail == "phrase"]
+    assert [one.label for one in found] == phrases
+    for one in found:
+        # With a time constraint and the end of the clause, the chosen phrase is a whole clause.
+        typed = before.rpartition(" ")[2]
+        head = f"in-tray: holds({before.removesuffix(typed)}"
+        clause = applied(head, replace(one, span=Span(len(head), len(head))))
+        assert parse_declaration("bdd", THEN % f"{clause}, after <end>)").faults == ()

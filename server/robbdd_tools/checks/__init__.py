@@ -60,6 +60,7 @@ from robbdd_tools.checks.single_element import single_element
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
 from robbdd_tools.checks.unused_import import unused_import
+from robbdd_tools.checks.unused_predicate import unused_predicate
 from robbdd_tools.checks.unused_set import unused_set
 from robbdd_tools.checks.unused_task import unused_task
 from robbdd_tools.checks.unused_variable import unused_variable
@@ -124,6 +125,7 @@ FILE_RULES = (
     several_places,
     unused_event,
     unused_import,
+    unused_predicate,
     unused_set,
     unused_task,
     unused_variable,

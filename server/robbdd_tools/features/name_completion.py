@@ -15,6 +15,7 @@ from robbdd_tools.checks.setting import may_have
 from robbdd_tools.features.element_properties import CONDITION, name_choices, value_choices
 from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
+from robbdd_tools.features.predicate_phrases import phrase_form
 from robbdd_tools.features.unimported import Elsewhere, beside, loaded
 from robbdd_tools.features.value_types import (
     fits,
@@ -195,8 +196,17 @@ class Names:
                 known.add(name)
                 if fits(self.snapshot, definition, own, members):
                     yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
+                    if role == "Predicate":
+                        yield from self._whole_phrase(definition)
             if role not in ("Namespace", "Term") and members is None:
                 yield from islice(self._to_import(role, known, bracket, wanted), MAX_TO_IMPORT)
+
+    def _whole_phrase(self, definition: Definition) -> Iterator[Completion]:
+        """Yield the phrase of a named predicate with its parameters as placeholders."""
+        form = phrase_form(self.snapshot, definition, is_after_subject=self.cursor.before.rstrip().endswith(">"))
+        if form is not None:
+            origin = definition.uri, definition.symbol.path
+            yield Completion(form[0], "snippet", "phrase", form[1], self.cursor.span, self.whole, origin=origin)
 
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)
