@@ -63,7 +63,7 @@ def _robosuite(name: str, folder: str, works: int, hand: str, forward: float = 0
 
 
 ARMS = (
-    Arm("panda-of-pybullet", f"{_PYBULLET}/franka_panda/panda.urdf", 9),
+    Arm("panda-of-pybullet", f"{_PYBULLET}/franka_panda/panda.urdf", 10),
     Arm("xarm6-of-pybullet", f"{_PYBULLET}/xarm/xarm6_with_gripper.urdf", 10, forward=0.08),
     _robosuite("panda-of-robosuite", "panda", 10, "panda"),
     _robosuite("ur5e-of-robosuite", "ur5e", 10, "panda"),

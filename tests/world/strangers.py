@@ -93,6 +93,39 @@ JAWS = (
 )
 """The same arm with three rotating fingers around the hand."""
 
+
+def _jaw(number: int) -> str:
+    return (
+        f'<body name="knuckle{number}" euler="0 0 {120 * number}"><body pos=".035 0 .03">'
+        f'<joint name="fj{number}" axis="0 -1 0" range="-30 40" damping=".2" armature=".01"/>'
+        '<geom type="capsule" size=".007" fromto="0 0 0 .02 0 .04" mass=".03"/><body pos=".02 0 .04">'
+        f'<geom name="pad{number}" type="box" size=".005 .009 .02" pos="-.004 0 .02" mass=".02" {_SOFT}/>'
+        "</body></body></body>"
+    )
+
+
+RAIL = f"""<mujoco model="rail">
+<!-- Torque-driven arm on a rail, redundant; three fingers around the hand that swing from far outside. -->
+<compiler angle="degree" autolimits="true"/><default><joint armature=".1"/><motor ctrlrange="-150 150"/></default>
+<worldbody><body name="rail"><geom type="box" size=".05 .6 .03" mass="8"/>
+<body name="cart" pos="0 0 .06"><joint name="slide" type="slide" axis="0 1 0" range="-.5 .5"/>
+<geom type="box" size=".07 .07 .03" mass="3"/>
+<body name="l1" pos="0 0 .1"><joint name="j1" axis="0 0 1" range="-170 170"/>
+<geom type="cylinder" size=".05 .06" mass="2"/>
+<body name="l2" pos="0 0 .12"><joint name="j2" axis="0 1 0" range="-120 120"/>
+<geom type="capsule" size=".04" fromto="0 0 0 0 0 .35" mass="2"/>
+<body name="l3" pos="0 0 .35"><joint name="j3" axis="0 1 0" range="-150 150"/>
+<geom type="capsule" size=".035" fromto="0 0 .05 0 0 .3" mass="1.5"/>
+<body name="l4" pos="0 0 .34"><joint name="j4" axis="0 1 0" range="-120 120"/>
+<geom type="capsule" size=".03" fromto="0 0 .03 0 0 .06" mass="1"/>
+<body name="hand" pos="0 0 .1"><joint name="j5" axis="0 0 1" range="-180 180"/>
+<geom type="box" size=".05 .03 .015" mass=".4"/>{_jaw(0)}{_jaw(1)}{_jaw(2)}
+</body></body></body></body></body></body></body></worldbody>
+<equality><joint joint1="fj1" joint2="fj0"/><joint joint1="fj2" joint2="fj0"/></equality>
+<actuator><motor joint="slide" ctrlrange="-400 400"/><motor joint="j1"/><motor joint="j2"/><motor joint="j3"/>
+<motor joint="j4" ctrlrange="-50 50"/><motor joint="j5" ctrlrange="-20 20"/>
+<position name="grip" joint="fj0" kp="20" kv="1" ctrlrange="-.5 .7" forcerange="-3 3"/></actuator></mujoco>"""
+
 _CUP = '<body name="cup" pos="0 0 .06"><geom type="cylinder" size=".012 .03" mass=".05"/></body>'
 _BARE = re.sub(r"<tendon>.*</equality>|<general name=.fingers.*?/>", "", SIX, flags=re.DOTALL)
 CUP_ONLY = re.sub(r'<body name="lf".*?</body><body name="rf".*?</body>', _CUP, _BARE, flags=re.DOTALL)

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
@@ -21,7 +22,7 @@ from robbdd_tools.catalog.executable import (
     SceneInstance,
 )
 from robbdd_tools.protocol.specs import ExecutionSpec
-from robbdd_tools.world.arm_kinematics import arm_of
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.motion import ToolPose, frame_of
@@ -46,9 +47,9 @@ def robot(folder: Path, text: str, arm: ArmModel | None = None, name: str = "") 
     return robot_from(source(folder, text, arm, name), ARM)
 
 
-def picking(folder: Path, text: str) -> Execution:
+def picking(folder: Path, text: str, arm: ArmModel | None = None) -> Execution:
     """Return the execution in which an arm from a file moves the cube into the bin."""
-    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(folder, text),)),))
+    instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(folder, text, arm),)),))
     execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
     spec = replace(scenario(replace(SCENE, agents=(ARM,)), 1), execution=execution)
     return Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
@@ -56,7 +57,9 @@ def picking(folder: Path, text: str) -> Execution:
 
 @pytest.mark.physics
 @pytest.mark.parametrize(
-    "text", [strangers.SCARA, strangers.THUMB, strangers.SIX, strangers.VACUUM, strangers.GANTRY, MJCF]
+    "text",
+    [strangers.SCARA, strangers.THUMB, strangers.SIX, strangers.VACUUM, strangers.GANTRY, strangers.RAIL, MJCF],
+    ids=["scara", "thumb", "six", "vacuum", "gantry", "rail", "five"],
 )
 def test_an_arm_picks_and_places_with_the_data_in_its_file_alone(tmp_path: Path, text: str) -> None:
     run = picking(tmp_path, text)
@@ -94,6 +97,12 @@ def test_three_rotating_fingers_around_a_hand_are_two_faces(tmp_path: Path) -> N
     assert "apad" in first
     assert {"bpad", "cpad"} <= {*others}
     assert not {"bpad", "cpad"} & {*first}
+
+
+def test_fingers_that_swing_far_ahead_are_opposite(tmp_path: Path) -> None:
+    found = robot(tmp_path, strangers.RAIL)
+    assert finger_motion(found).faces == (("pad0",), ("pad1", "pad2"))
+    assert found.stroke > 0.09
 
 
 def test_the_roots_of_fingers_do_not_narrow_the_opening(tmp_path: Path) -> None:
@@ -135,6 +144,40 @@ def test_a_home_is_found_from_which_the_arm_reaches_far(tmp_path: Path) -> None:
         place, turn = frame_of(ToolPose(1.2, 0.3, height, 0.2))
         reached, _ = arm.forward(arm.solve(arm.towards(place), place, turn))
         assert reached == pytest.approx(place, abs=1e-4)
+
+
+def test_the_fingers_close_across_the_way_ahead_at_a_home_that_was_found(tmp_path: Path) -> None:
+    """Otherwise the wrist reaches its limit on the way to half of the grasps."""
+    found = robot(tmp_path, MJCF)
+    place, axes = arm_of(found).forward(np.array(found.home))
+    assert axes[:, 0] == pytest.approx([1.0, 0.0, 0.0], abs=0.01), "x points ahead"
+    assert abs(found.home[-1]) < 0.1, "the wrist turns as far to both sides"
+    assert place[0] > 0.3
+
+
+def test_an_arm_reaches_a_place_from_another_posture_than_its_home(tmp_path: Path) -> None:
+    """From this home, the wrist is 0.2 rad from its limit, and the tool turned by a quarter of a turn."""
+    arm = arm_of(robot(tmp_path, MJCF, ArmModel(home=(0.0, 0.2, 1.6, 1.3416, 2.8))))
+    wanted = frame_of(ToolPose(0.55, 0.0, 0.1, -0.5))
+    with pytest.raises(Unreachable):
+        arm.solve(arm.towards(wanted[0]), *wanted)
+    joints = next(arm.solutions(*wanted))
+    assert arm.forward(joints)[0] == pytest.approx(wanted[0], abs=1e-4)
+
+
+def test_a_wrist_at_its_limit_changes_its_posture(tmp_path: Path) -> None:
+    """With this home, the straight path to the cube exceeds the limit of the wrist."""
+    run = picking(tmp_path, MJCF, ArmModel(home=(0.0, 0.2, 1.6, 1.3416, 2.8)))
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_tips_of_rotating_fingers_pass_over_the_table(tmp_path: Path) -> None:
+    """On their arcs, the tips reach lower than where they meet."""
+    motion = finger_motion(robot(tmp_path, strangers.SIX))
+    assert motion.reach(0.0) > motion.reach(0.07) > 0.0
+    assert finger_motion(robot(tmp_path, strangers.SCARA, name="sliding.xml")).sweep == (), (
+        "sliding fingers reach as far everywhere"
+    )
 
 
 def test_gripping_faces_without_friction_are_a_fault_of_the_model_unless_the_scene_states_it(tmp_path: Path) -> None:

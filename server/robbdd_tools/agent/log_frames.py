@@ -37,6 +37,7 @@ Poses = tuple["FloatArray", "FloatArray"]
 """Positions (n, 3) m in the frame of the world and orientations (n, 4), w first; NaN where unobserved."""
 NAME_WORLD = "name the frame of the world with --world FRAME"
 WORLD = "world"
+CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
 class Frames:
@@ -100,7 +101,7 @@ class Frames:
         frame = self._bases.get(agent)
         if frame is not None and (found := self._poses(frame, times)) is not None:
             self._remarks.append(f"the base of {agent} is the frame '{frame}'")
-            return found
+            return found[0], product(found[1], _tilts(self._cast, agent, len(times)) * CONJUGATE)
         pose = self._stated_pose(agent, self._base)
         hint = f"name the frame of its base with --base {local_name(agent)}=FRAME"
         if pose is None:
@@ -200,7 +201,8 @@ class Frames:
             if pose is None or not self._is_fixed(frame):
                 continue
             place, turn = poses_at(self._world, frame, self._tracks, np.zeros(1), self._max_gap)
-            origin, base = _fixed(pose, 1)
+            origin, upright = _fixed(pose, 1)
+            base = product(upright, _tilts(self._cast, agent, 1))
             self._tracks[self._world] = Track(
                 WORLD, np.zeros(1), origin + rotated(base, place), product(base, turn), static=True
             )
@@ -221,6 +223,11 @@ class Frames:
                 return False
             frame = self._tracks[frame].parent
         return True
+
+
+def _tilts(cast: Cast, agent: str, count: int) -> FloatArray:
+    """Return the rotation of an agent's base from its upright one ``count`` times, quaternions, shape (count, 4)."""
+    return np.tile(cast.agents[agent].tilt, (count, 1))
 
 
 def _fixed(pose: Pose, count: int) -> Poses:

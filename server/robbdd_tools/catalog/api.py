@@ -10,6 +10,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Literal, Protocol
 
+from robbdd_tools.base.solid_shapes import Shape as Shape
+from robbdd_tools.base.solid_shapes import ShapeKind as ShapeKind
+from robbdd_tools.base.solid_shapes import Vector as Vector
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -17,9 +21,6 @@ if TYPE_CHECKING:
     from robbdd_tools.base.articulation import OpeningRecord, PassiveJoint
 
     FloatArray = NDArray[np.float64]
-
-Vector = tuple[float, float, float]
-"""Metres, x y z."""
 
 
 class Kind(StrEnum):
@@ -231,29 +232,6 @@ class Behaviour:
     aliases: tuple[str, ...] = ()
 
 
-class ShapeKind(StrEnum):
-    """Primitive collision shapes."""
-
-    BOX = "box"
-    SPHERE = "sphere"
-    CYLINDER = "cylinder"
-
-
-@dataclass(frozen=True, slots=True)
-class Shape:
-    """A primitive shape in the frame of its object.
-
-    - ``size``, m: half edges of a box, (radius, 0, 0) of a sphere, (radius, half length, 0) of a cylinder along z.
-    - ``position``: the centre of the shape.
-    - ``surface``: the surface velocity (m/s, along one axis) of a driven belt; ``None`` for other shapes.
-    """
-
-    kind: ShapeKind
-    size: Vector
-    position: Vector = (0.0, 0.0, 0.0)
-    surface: Vector | None = None
-
-
 @dataclass(frozen=True, slots=True)
 class ObjectModel:
     """A kind of object in the simulated world: for objects whose name, or that of their set, has one of ``prefixes``.
@@ -347,4 +325,6 @@ class RobotModel:
     """How long the agent checks a grip before the arm moves, s."""
     release_time: float = 0.32
     """How long the open gripper waits before it retracts, s."""
+    tilt: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+    """Rotation (w, x, y, z) of the arm from its upright base: that of an arm that hangs or leans."""
     gripper: GripperKind = GripperKind.PARALLEL

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.clearance import Clearance
+from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.gripper import Step, gripper_of
-from robbdd_tools.world.motion import Motion, ToolPose, plan, plan_through, present_pose
+from robbdd_tools.world.motion import Motion, ToolPose, frame_of, plan, plan_joints, plan_through, present_pose
 from robbdd_tools.world.parking import parking_pose
 from robbdd_tools.world.reaching import at_travel
 
@@ -20,6 +22,12 @@ if TYPE_CHECKING:
 
 SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
+DIP = 0.05
+"""How far (m) the tool may sink below both ends of a path on which the joints move evenly."""
+LONG = 10.0
+"""Duration (s) of a motion from which on an even motion of the joints is considered: it should take half as long."""
+TRIED = 40
+"""Number of postures of such a path that are checked for collisions."""
 ARRIVED = 1e-3
 """Difference (m, rad) up to which an arm is at its parking pose."""
 
@@ -66,6 +74,48 @@ class ArmControl:
         Raises ``BehaviourError`` if the path exceeds the joint limits or the held object is lost.
         """
         yield from self._follow(lambda limit: plan(self.arm, self.joints, goal, self._limits, limit), speed, until)
+
+    def move_above(self, above: ToolPose, at: ToolPose) -> Step:
+        """Move the tool to a pose above another one, to which it can then descend. Raises the same.
+
+        Where the straight path exceeds the joint limits, or takes long as the posture changes unevenly along it, the
+        joints move evenly to another posture if nothing is in the way. Arms with published results keep to their paths.
+        """
+
+        def planned(limit: float) -> Motion:
+            try:
+                motion = plan(self.arm, self.joints, above, self._limits, limit)
+                if self.arm.is_published:
+                    return motion
+                # A posture from which it cannot descend is of no use.
+                self.arm.solve(motion.joints[-1], *frame_of(at))
+                other = self._change_posture(above, at, limit) if len(motion.joints) * TICK > LONG else None
+                return motion if other is None or len(other.joints) > len(motion.joints) / 2 else other
+            except Unreachable:
+                if self.arm.is_published:
+                    raise
+                motion = self._change_posture(above, at, limit)
+                if motion is None:
+                    raise
+                return motion
+
+        yield from self._follow(planned, None, None)
+
+    def _change_posture(self, above: ToolPose, at: ToolPose, limit: float) -> Motion | None:
+        """Return a free motion to the nearest posture at a pose from which the tool can descend."""
+        clearance = Clearance(self.simulation, self.robot, self.held or "", self.simulation.data, control=self.control)
+        lowest = min(self.tool.height, above.height) - DIP
+        found = list(self.arm.solutions(*frame_of(above)))
+        for goal in sorted(found, key=lambda one: float(np.abs(one - self.joints).max())):
+            try:
+                self.arm.solve(goal, *frame_of(at))
+            except Unreachable:
+                continue
+            motion = plan_joints(self.arm, self.joints, goal, self._limits, limit)
+            tried = motion.joints[:: max(1, len(motion.joints) // TRIED)]
+            if all(self.arm.forward(one)[0][2] >= lowest and clearance.depth(one) == 0.0 for one in tried):
+                return motion
+        return None
 
     def move_through(self, poses: Sequence[ToolPose], speed: float, until: Callable[[], bool] | None = None) -> Step:
         """Move the tool through some poses without a stop. Raises the same."""

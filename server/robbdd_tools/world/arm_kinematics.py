@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from math import degrees
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.robot_specs import load_robot
+from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel
@@ -36,6 +38,8 @@ VERTICAL, AHEAD = 0.999, 0.05
 """Cosine of a vertical axis; bearing (rad) up to which a tool is straight ahead."""
 STRIDE = 0.3
 """Largest change of a joint in one iteration, rad."""
+SEEDS = 12
+"""Random postures from which a second search starts; they are the same in every run."""
 
 
 class Unreachable(BehaviourError):
@@ -51,11 +55,13 @@ class Arm:
     """An arm by itself; tool poses are in the frame of its base.
 
     ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the preferred posture, all in rad. ``limited`` says
-    which joints have limits, ``turning`` which ones are not sliding.
+    which joints have limits, ``turning`` which ones are not sliding. ``is_published`` marks upright arms of the
+    catalog: their motions are part of published results, so that they take no other way where theirs ends.
     """
 
     def __init__(self, robot: RobotModel) -> None:
         self._model: Any = load_robot(robot).compile()
+        tilt_model(self._model, robot.tilt)
         self._data: Any = mujoco.MjData(self._model)
         self._site = int(self._model.site(robot.tool_site).id)
         joints = [self._model.joint(name) for name in robot.joints]
@@ -76,8 +82,9 @@ class Arm:
         self._jacobian: FloatArray = np.zeros((6, self._model.nv))
         self._turns: FloatArray = np.zeros((2, 4))
         self._weights: FloatArray = np.zeros(6)
-        # The results of the catalog's arms were published with the plain rule: their tools are straight ahead at home.
-        self._turns_with = (0.0, 1.0) if prepared_robot(robot.mjcf) is None else self._first_joint()
+        # The catalog's results were published with plain rules: one search, and tools straight ahead at home.
+        self.is_published = prepared_robot(robot.mjcf) is None and robot.tilt == UPRIGHT
+        self._turns_with = (0.0, 1.0) if self.is_published else self._first_joint()
 
     def forward(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the tool's position (3,) m and rotation matrix (3, 3) for joint positions (n,) rad."""
@@ -112,6 +119,35 @@ class Arm:
             direction = np.arctan2(position[1], position[0])
             posture[0] += direction if self._turns_with == (0.0, 1.0) else self._turned(direction)
         return np.minimum(np.maximum(posture, self.lower), self.upper)
+
+    def solutions(self, position: FloatArray, rotation: FloatArray) -> Iterator[FloatArray]:
+        """Yield joint positions (n,) that put the tool at a pose; raises ``Unreachable`` if there are none.
+
+        The first search starts at the home posture, turned towards the goal. Unless the arm's results are published,
+        others start at random postures: its home may be a posture from which a joint limit is in the way.
+        """
+        missed: Unreachable | None = None
+        found = 0
+        for seed in self._seeds(position):
+            try:
+                joints = self.solve(seed, position, rotation)
+            except Unreachable as error:
+                missed = error if missed is None or error.short < missed.short else missed
+                continue
+            found += 1
+            yield joints
+        if missed is not None and not found:
+            raise missed
+
+    def _seeds(self, position: FloatArray) -> Iterator[FloatArray]:
+        posture = self.towards(position)
+        yield posture
+        dice = np.random.default_rng(1)
+        for _ in range(0 if self.is_published else SEEDS):
+            seed = self.lower + dice.random(len(posture)) * (self.upper - self.lower)
+            if self._turns_with is not None:
+                seed[0] = posture[0]
+            yield seed
 
     def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
         """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.

@@ -25,6 +25,7 @@ from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from robbdd_tools.world.staging import Staging
+from robbdd_tools.world.tilted_base import UPRIGHT, rotation_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
@@ -204,11 +205,12 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
             # Its control input is the speed of the target: a target that jumps with every tick would shake the arm.
             servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
             servo.ctrllimited = False
-    turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
+    turn = rotation_of(base.yaw, robot.tilt)
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
     _attach(spec, child, f"{name}/", frame)
     pairs = apart
-    if mobile is None:
+    # What an arm hangs on is part of the scene.
+    if mobile is None and robot.tilt == UPRIGHT:
         _add_column(spec, name, base, THINGS | robots)
         pairs = [*apart, *((COLUMN, body) for body in beside_base)]
     for one, other in pairs:

@@ -18,12 +18,19 @@ class FingerMotion:
     - ``open_joints``: positions of the gripper's joints when it is open. If it is empty, these are the joints of the
       pads, at the control value of the open gripper.
     - ``faces``: the geoms of each gripping face; empty if each pad is one.
+    - ``sweep``: how far (m) the fingers reach beyond the tool while they close, each with the distance of the faces (m)
+      there, from open to closed; empty if they slide.
     """
 
     rate: float = 1.0
     settling: float = 0.0
     open_joints: tuple[tuple[str, float], ...] = ()
     faces: tuple[tuple[str, ...], ...] = ()
+    sweep: tuple[tuple[float, float], ...] = ()
+
+    def reach(self, width: float) -> float:
+        """Return how far (m) the fingers reach beyond the tool at most until they have closed to a width (m)."""
+        return max((beyond for gap, beyond in self.sweep if gap >= width), default=0.0)
 
 
 _PLAIN = FingerMotion()

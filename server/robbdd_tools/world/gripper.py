@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
@@ -21,6 +23,8 @@ CLOSING = 0.05
 """Speed of one finger, m/s."""
 PATIENCE = 60
 """Ticks beyond the closing time after which the object counts as missed."""
+OFF = 0.002
+"""Distance (m) of rotating fingers from what an object stands on."""
 STANDOFF, PRESS = 0.015, 0.010
 """Height above the object where a cup's slow descent starts, and depth below its top where it gives up, m."""
 DESCENT = 0.05
@@ -93,7 +97,16 @@ class Fingers(Gripper):
 
     def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
         """Return the grasps across the object's sides that are narrow enough."""
-        return finger_grasps(name, model, position, rotation, self._robot.stroke)
+        found = finger_grasps(name, model, position, rotation, self._robot.stroke)
+        return [self._off_the_support(grasp) for grasp in found]
+
+    def _off_the_support(self, grasp: Grasp) -> Grasp:
+        """Return a grasp so high that the tips of rotating fingers pass over what the object stands on."""
+        reach = self._motion.reach(grasp.width)
+        lift = reach + OFF - grasp.below if reach else 0.0
+        if lift <= 0.0:
+            return grasp
+        return replace(grasp, position=grasp.position + np.array([0.0, 0.0, lift]), below=grasp.below + lift)
 
     def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
         """Move around the object and close until both fingers press on it."""

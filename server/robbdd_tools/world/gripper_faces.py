@@ -45,13 +45,15 @@ def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, Floa
     base = int(model.body_weldid[palm])
     moving = [body for body in fingers if body != base]
     branch = {body: _branch(model, body, palm) for body in moving}
-    moves = _movements(model, states)
+    moves = _movements(model, fingers, states)
+    # Fingers around a hand that swing far move ahead, too, all alike: only the rest of their movements is opposite.
+    common = np.mean([moves[body] for body in moving] or [np.zeros(3)], axis=0)
     apart = [
         (one, other)
         for one, other in combinations(moving, 2)
         if branch[one] != branch[other]
         and _joints_to(model, one, palm) == _joints_to(model, other, palm)
-        and _approach(moves[one], moves[other])
+        and (_approach(moves[one], moves[other]) or _approach(moves[one] - common, moves[other] - common))
     ]
     # One finger may close on the palm.
     pairs = apart or [(one, base) for one in moving if base in fingers]
@@ -122,15 +124,18 @@ def _new(faces: Faces, name: str) -> tuple[str, ...]:
     return () if any(name in face for face in faces) else (name,)
 
 
-def _movements(model: Any, states: Mapping[float, FloatArray]) -> FloatArray:
-    """Return how far (m) each body moves between the two states, shape (bodies, 3)."""
+def _movements(
+    model: Any, fingers: Mapping[int, Sequence[int]], states: Mapping[float, FloatArray]
+) -> dict[int, FloatArray]:
+    """Return how far (m, shape (3,)) the shape of each finger that moves most moves between the two states."""
     data = mujoco.MjData(model)
     places: list[FloatArray] = []
     for state in states.values():
         data.qpos[:] = state
         mujoco.mj_kinematics(model, data)
-        places.append(data.xipos.copy())
-    return places[1] - places[0]
+        places.append(data.geom_xpos.copy())
+    moved = places[1] - places[0]
+    return {body: max(moved[geoms], key=lambda one: float(one @ one)) for body, geoms in fingers.items()}
 
 
 def _approach(one: FloatArray, other: FloatArray) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 SETTLING, STILL = 5000, 1e-3
 """Largest number of steps of 2 ms in which a gripper opens or closes; speed (rad/s, m/s) of joints at rest."""
+BETWEEN = 0.02
+"""Change of a joint (rad, m) between two states of a closing gripper."""
 CONTRADICTION = 0.25
 """Share by which a stated stroke may differ from the measured one."""
 SLACK = 1e-6
@@ -37,6 +40,8 @@ class FoundGripper:
     - ``rate``: change of the actuator's value per metre that a finger moves.
     - ``settling``: how long (s) the fingers take from one end to the other.
     - ``open_joints``: the positions of the gripper's joints when it is open.
+    - ``sweep``: how far (m) rotating fingers reach beyond the tool while they close, each with the distance of the
+      faces (m) there.
     - ``middle``, ``across``, ``ahead``: the place (m) between the closed fingers at their tips, the direction in which
       they close and the one out of the hand, in the frame of the palm, shape (3,) each.
     """
@@ -53,6 +58,7 @@ class FoundGripper:
     middle: FloatArray
     across: FloatArray
     ahead: FloatArray
+    sweep: tuple[tuple[float, float], ...] = ()
 
     @property
     def pads(self) -> tuple[str, ...]:
@@ -155,9 +161,7 @@ class GripperReader:
         model.opt.timestep = 0.002
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        behind = {str(joint.name) for joint in self._parts.joints}
-        fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
-        places, speeds = model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
+        places, speeds = self._fixed(model)
         data.ctrl[model.actuator(actuator.name).id] = control
         try:
             with strict(model, data):
@@ -216,7 +220,46 @@ class GripperReader:
             turn.T @ (middle - place),
             turn.T @ across,
             turn.T @ ahead,
+            tuple(self._sweep(model, actuator, faces, (states[opened], closed), (ahead, depth))),
         )
+
+    def _sweep(
+        self,
+        model: Any,
+        actuator: Any,
+        faces: tuple[tuple[str, ...], ...],
+        way: tuple[FloatArray, float],
+        tool: tuple[FloatArray, float],
+    ) -> Iterator[tuple[float, float]]:
+        """Yield the distance of the faces (m) and how far (m) the fingers reach beyond the tool, from open to closed.
+
+        ``way`` is the open position of all joints and the value that closes the gripper, ``tool`` the direction out of
+        the hand and how far the tool is along it. Nothing for fingers that slide: they always reach as far.
+        """
+        if not any(joint.type == mujoco.mjtJoint.mjJNT_HINGE for joint in self._parts.joints):
+            return
+        own = {str(body.name) for body in self._parts.bodies[1:]}
+        shapes = [
+            str(model.geom(geom).name)
+            for geom in range(model.ngeom)
+            if str(model.body(int(model.geom_bodyid[geom])).name) in own
+            and (model.geom_contype[geom] or model.geom_conaffinity[geom])
+        ]
+        data = mujoco.MjData(model)
+        data.qpos[:] = way[0]
+        data.ctrl[model.actuator(actuator.name).id] = way[1]
+        places, speeds = self._fixed(model)
+        for state in _states_on_the_way(model, data, places, speeds):
+            data.qpos[:] = state
+            mujoco.mj_kinematics(model, data)
+            lowest = max(extent(model, data, name, tool[0])[1] for name in shapes)
+            yield gap(model, state, faces), lowest - tool[1]
+
+    def _fixed(self, model: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the addresses of the positions and speeds of all joints but those of the gripper."""
+        behind = {str(joint.name) for joint in self._parts.joints}
+        fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
+        return model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
 
     def _cup(self, actuator: Any) -> FoundGripper:
         body = self._parts.spec.body(str(actuator.target))
@@ -254,6 +297,20 @@ class GripperReader:
             turn.T @ axes[:, 0],
             turn.T @ axis,
         )
+
+
+def _states_on_the_way(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> list[FloatArray]:
+    """Return the joint positions at equal distances until the gripper is at rest; the other joints stay."""
+    start = data.qpos[places].copy()
+    found = [data.qpos.copy()]
+    for step in range(SETTLING):
+        mujoco.mj_step(model, data)
+        data.qpos[places], data.qvel[speeds] = start, 0.0
+        if np.abs(data.qpos - found[-1]).max() > BETWEEN:
+            found.append(data.qpos.copy())
+        elif step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
+            break
+    return [*found, data.qpos.copy()]
 
 
 def _move_alone(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> int:

@@ -25,6 +25,11 @@ CLOSE = 1e-3
 """Pose error (m and rad) at which a posture is accepted."""
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15)
 """Places of the tool: shares of the arm's reach ahead of the base, and heights (m) above it."""
+TRAVEL, GRASP = (0.35, 0.45, 0.25, 0.60, 0.80), (0.30, 0.15)
+"""Heights (m) above the world's origin for a tilted arm: it works at those of tables, wherever it is fixed.
+
+The first ones are for the home, the others to compare postures.
+"""
 OUTWARDS, LEVELS = (0.65, 0.75, 0.85, 0.95), (0.25, 0.0)
 """Places at which a posture is compared with others: shares of the arm's reach from the middle on, heights (m)."""
 JUMP = 1.0
@@ -41,13 +46,15 @@ def find_home(
     fingers: dict[str, float],
     palm: str,
     named: Iterable[Mapping[str, float]] = (),
+    height: float | None = None,
 ) -> tuple[float, ...]:
     """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best one of a search.
 
     ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Positions of joints that are
-    ``named`` elsewhere count like key frames. Raises ``SceneError`` if the arm has no such posture.
+    ``named`` elsewhere count like key frames. ``height`` is that of a tilted base above the world's origin (m). Raises
+    ``SceneError`` if the arm has no such posture.
     """
-    search = _Search(model, joints, tool, fingers, palm)
+    search = _Search(model, joints, tool, fingers, palm, height)
     for posture in (*search.key_frames(), *search.complete(joints, named)):
         if search.points_down(posture):
             return tuple(posture.tolist())
@@ -55,7 +62,7 @@ def find_home(
     if found is None:
         text = f"the arm in {source.name} cannot point its tool straight down in front of its base"
         raise SceneError(f"{text}: check 'tool', or state 'home'", origin=source.origin)
-    return tuple(round(float(value), 6) for value in found)
+    return tuple(round(float(value), 6) for value in search.straightened(found))
 
 
 def _different(postures: Iterable[FloatArray]) -> list[FloatArray]:
@@ -68,8 +75,14 @@ def _different(postures: Iterable[FloatArray]) -> list[FloatArray]:
 
 
 class _Search:
-    def __init__(self, model: Any, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str) -> None:
+    def __init__(
+        self, model: Any, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str, height: float | None
+    ) -> None:
         self._model = model
+        self._heights, self._levels = HEIGHTS, LEVELS
+        if height is not None:
+            self._heights = tuple(one - height for one in TRAVEL)
+            self._levels = tuple(one - height for one in GRASP)
         self._data: Any = mujoco.MjData(model)
         for name, value in fingers.items():
             self._data.qpos[model.joint(name).qposadr[0]] = value
@@ -113,7 +126,7 @@ class _Search:
         span = np.minimum(self._high, np.pi) - np.maximum(self._low, -np.pi)
         starts = np.maximum(self._low, -np.pi) + dice.random((SEEDS, len(self._low))) * span
         self._reach = max(float(np.hypot(*self._forward(start)[0][:2])) for start in starts)
-        for height in HEIGHTS:
+        for height in self._heights:
             for share in DISTANCES:
                 goal = np.array([share * self._reach, 0.0, height])
                 found = [one for start in starts if (one := self._solved(start, goal)) is not None]
@@ -122,13 +135,26 @@ class _Search:
                     yield from clear
                     return
 
+    def straightened(self, posture: FloatArray) -> FloatArray:
+        """Return a posture at the same place whose fingers close across the way ahead, if there is one.
+
+        From there, the wrist turns as far to either side as grasps need; otherwise a limit of it may be in the way.
+        """
+        place, _ = self._forward(posture)
+        found = [
+            one
+            for sign in (1.0, -1.0)
+            if (one := self._solved(posture, place, np.array([0.0, sign, 0.0]))) is not None and self._is_clear_at(one)
+        ]
+        return max(found, key=lambda one: self._room(one)[-1], default=posture)
+
     def quality(self, posture: FloatArray) -> tuple[int, float]:
         """Return the number of places that the arm reaches from a posture, then how comfortable the posture is.
 
         An arm has up to eight postures for one place, between which it cannot change on its way; a wrist that is turned
         inwards reaches less of the table.
         """
-        return sum(self._reached(posture, height) for height in LEVELS), self._comfort(posture)
+        return sum(self._reached(posture, height) for height in self._levels), self._comfort(posture)
 
     def _reached(self, posture: FloatArray, height: float) -> int:
         """Return how many of the places at a height the arm reaches one after the other."""
@@ -141,13 +167,17 @@ class _Search:
 
     def _comfort(self, posture: FloatArray) -> float:
         """Return how far a posture is from its joint limits, as a share, and from a stretched arm."""
-        room = np.minimum(posture - self._low, self._high - posture) / (self._high - self._low)
+        room = self._room(posture)
         self._forward(posture)
         stretches: list[float] = np.linalg.svd(self._jacobian()[:3], compute_uv=False).tolist()
         above = float(self._data.xpos[1:, 2].mean())
         aside = float(np.abs(self._data.xpos[1:, 1]).mean())
         # An arm that bends upwards keeps its elbow off the table; one in the plane of its tool turns to both sides.
         return float(np.min(room)) + stretches[-1] + above - aside
+
+    def _room(self, posture: FloatArray) -> FloatArray:
+        """Return the distance of each joint from its limits as a share of its range."""
+        return np.minimum(posture - self._low, self._high - posture) / (self._high - self._low)
 
     def _forward(self, posture: FloatArray) -> tuple[FloatArray, FloatArray]:
         self._data.qpos[self._places] = posture
@@ -160,10 +190,10 @@ class _Search:
         mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
         return jacobian[:, self._speeds]
 
-    def _solved(self, start: FloatArray, goal: FloatArray) -> FloatArray | None:
+    def _solved(self, start: FloatArray, goal: FloatArray, across: FloatArray | None = None) -> FloatArray | None:
         """Return a posture with the tool at a place and pointing down, by damped least squares; ``None`` without one.
 
-        Any rotation about the vertical will do.
+        Any rotation about the vertical will do, unless the direction (3,) of the tool's y axis is given.
         """
         posture = start
         for _ in range(ROUNDS):
@@ -173,6 +203,10 @@ class _Search:
                 length = float(np.linalg.norm(tilt))
                 around: FloatArray = tilt / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
                 tilt = around * (np.pi - np.arcsin(min(1.0, length)))
+            if across is not None:
+                present = turn[:, 1]
+                left = np.arctan2(np.cross(present, across)[2], present @ across)
+                tilt = tilt + np.array([0.0, 0.0, left])
             gap = np.concatenate([goal - place, tilt])
             if np.abs(gap).max() < CLOSE:
                 return posture

@@ -33,6 +33,8 @@ PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774
 """Peaks of the minimum-jerk profile over unit distance and time."""
 BEND = 0.3
 """Joint change (rad) between path points from which on a second search starts at the arm's current position."""
+JOINT_POINTS = 32
+"""Number of parts of a motion on which the joints move evenly."""
 SHORTEST = 0.1
 """Duration of the shortest motion, s."""
 
@@ -126,6 +128,21 @@ def plan_through(arm: Arm, joints: FloatArray, poses: Sequence[ToolPose], limits
     length = sum(_length(one, other) for one, other in pairs)
     turn = sum(abs(other.turn - one.turn) for one, other in pairs)
     return _along(arm, joints, poses, (length, turn), limits, speed)
+
+
+def plan_joints(arm: Arm, joints: FloatArray, goal: FloatArray, limits: FloatArray, speed: float) -> Motion:
+    """Plan a motion on which all joints (n,) move evenly to their goals (n,), with the bounds of ``plan``."""
+    shares = np.linspace(0.0, 1.0, JOINT_POINTS + 1)
+    path = joints + shares[:, None] * (goal - joints)
+    places = np.array([arm.forward(one)[0] for one in path])
+    length = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    duration = max(
+        SHORTEST,
+        PEAK_SPEED * length / speed,
+        (PEAK_ACCELERATION * length / ACCELERATION) ** 0.5,
+        float((PEAK_SPEED * np.abs(goal - joints) / (MARGIN * limits)).max()),
+    )
+    return _timed(path, shares, duration)
 
 
 def _along(

@@ -18,7 +18,7 @@ from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.motion import ToolPose, tool_pose
 from robbdd_tools.world.put_down import Target, has_room, on_tables, targets
-from robbdd_tools.world.reaching import Approach, Obstruction, approaches, joints_at
+from robbdd_tools.world.reaching import Approach, Obstruction, approaches, either_way, joints_at
 from robbdd_tools.world.travel_clearance import height_over
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class PickPlace(ArmControl):
         over, here = self._carried_to(down, name, grasp), self.tool
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
-        yield from self.move(over)
+        yield from self.move_above(over, down)
         yield from self.move(down, self.robot.model.approach_speed)
         self.held = None
         yield from self.gripper.release(self)
@@ -129,7 +129,7 @@ class PickPlace(ArmControl):
             best = self._choose_grasp(name)
             planned = self.simulation.seen(name)
             yield from self.gripper.release(self)
-            yield from self.move(best.above)
+            yield from self.move_above(best.above, best.at)
             if not self.simulation.belts or not _has_moved(planned, self.simulation.seen(name)):
                 return best
             if self.time > given_up:
@@ -204,17 +204,26 @@ class PickPlace(ArmControl):
         top = max(robot.model.travel_height, height)
         closing = target.closing if target.closing is not None else grasp.closing
         while height <= top:
-            pose = tool_pose(robot.base, np.array([x, y, height]), closing)
-            try:
-                joints = joints_at(self.arm, self._carried_to(pose, name, grasp), pose)
-            except Unreachable as error:
-                missed.note(error)
+            found = self._reached(tool_pose(robot.base, np.array([x, y, height]), closing), name, grasp, missed)
+            if found is None:
                 return None
+            pose, joints = found
             hit = clearance.hit(joints)
             if hit.depth == 0.0:
                 return pose
             missed.touched[hit.owner] = None
             height += 0.02
+        return None
+
+    def _reached(
+        self, wanted: ToolPose, name: str, grasp: Grasp, missed: Obstruction
+    ) -> tuple[ToolPose, FloatArray] | None:
+        """Return a pose, or the one with both fingers interchanged, and the joint positions (rad) there."""
+        for pose in either_way(self.arm, wanted):
+            try:
+                return pose, joints_at(self.arm, self._carried_to(pose, name, grasp), pose)
+            except Unreachable as error:
+                missed.note(error)
         return None
 
     def _carried_to(self, pose: ToolPose, name: str, grasp: Grasp) -> ToolPose:

@@ -73,9 +73,21 @@ def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
 
 def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
     """Return the joint positions (rad) at a pose approached from above; raises ``Unreachable``."""
-    position, rotation = frame_of(above)
-    start = arm.solve(arm.towards(position), position, rotation)
-    return arm.solve(start, *frame_of(at))
+    missed: Unreachable | None = None
+    for start in arm.solutions(*frame_of(above)):
+        try:
+            return arm.solve(start, *frame_of(at))
+        except Unreachable as error:
+            missed = error if missed is None or error.short < missed.short else missed
+    assert missed is not None, "without a start, the search raises"
+    raise missed
+
+
+def either_way(arm: Arm, pose: ToolPose) -> tuple[ToolPose, ...]:
+    """Return a tool pose and, unless results of the arm are published, the same with both fingers interchanged."""
+    if arm.is_published:
+        return (pose,)
+    return pose, replace(pose, turn=pose.turn - pi if pose.turn > 0.0 else pose.turn + pi)
 
 
 def approaches(
@@ -105,16 +117,17 @@ def approaches_by(
     """Yield those of some grasps that are within the joint limits; how far others are out of reach is noted."""
     arm = arm_of(robot.model)
     for grasp in grasps:
-        at = tool_pose(robot.base, grasp.position, grasp.closing)
-        above = at_travel(robot, at)
-        try:
-            joints = joints_at(arm, above, at)
-        except Unreachable as error:
-            if missed is not None:
-                missed.note(error)
-            continue
-        hit = clearance.hit(joints)
-        yield Approach(grasp, above, at, joints, hit.depth, hit.owner)
+        for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
+            above = at_travel(robot, at)
+            try:
+                joints = joints_at(arm, above, at)
+            except Unreachable as error:
+                if missed is not None:
+                    missed.note(error)
+                continue
+            hit = clearance.hit(joints)
+            yield Approach(grasp, above, at, joints, hit.depth, hit.owner)
+            break
 
 
 class ReachSampler:

@@ -17,11 +17,13 @@ from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
 from robbdd_tools.world.home_posture import find_home
 from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
 from robbdd_tools.world.srdf_semantics import apply_srdf, path_to
+from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
 from robbdd_tools.world.urdf_files import HIDDEN, is_urdf
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
+    from robbdd_tools.world.tilted_base import Tilt
 
 SPEED = 1.0
 """Speed limit (rad/s, m/s) of an arm's joints if neither the file nor the model has one."""
@@ -46,20 +48,21 @@ def prepared_robot(key: str) -> Any | None:
     return _prepared.get(key)
 
 
-def robot_from(source: ModelSource, name: str) -> RobotModel:
+def robot_from(source: ModelSource, name: str, tilt: Tilt | None = None) -> RobotModel:
     """Return the arm in a file, with missing servos and names added; raises ``SceneError``.
 
+    From a base with a ``tilt``, tools point down, too.
     A file is read once in a process; code that makes a model is called each time.
     """
-    return _read_robot(source, name) if source.kind == "python" else _read_once(source, name)
+    return _read_robot(source, name, tilt) if source.kind == "python" else _read_once(source, name, tilt)
 
 
 @lru_cache(maxsize=ARMS)
-def _read_once(source: ModelSource, name: str) -> RobotModel:
-    return _read_robot(source, name)
+def _read_once(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel:
+    return _read_robot(source, name, tilt)
 
 
-def _read_robot(source: ModelSource, name: str) -> RobotModel:
+def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel:
     stated = source.arm or ArmModel()
     spec = load(source)
     if source.kind in ("file", "ros") and is_urdf(path_of(source)):
@@ -80,6 +83,8 @@ def _read_robot(source: ModelSource, name: str) -> RobotModel:
         # Arms compensate their own weight, as real controllers do.
         body.gravcomp = 1.0 if body.name != "world" else 0.0
     model = compiled(spec, source)
+    turn = UPRIGHT if tilt is None else tilt.rotation
+    tilt_model(model, turn)
     velocity = arm.velocity or velocity_limits(source, joints, SPEED)
     home = arm.home or find_home(
         model,
@@ -89,15 +94,18 @@ def _read_robot(source: ModelSource, name: str) -> RobotModel:
         dict(gripper.open_joints),
         chain[-1].name,
         [one.positions for one in semantics.homes],
+        height=None if tilt is None else tilt.height,
     )
     for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
             raise SceneError(counted, origin=source.origin, entry=ModelEntry(what))
     _refuse_outside(model, source, joints, home)
-    key = f"{source.iri}#{name}"
+    if tool == TOOL:
+        _face_ahead(spec, model, joints, home)
+    key = f"{source.iri}#{name}" + ("" if tilt is None else f"#{tilt}")
     _prepared[key] = spec
-    motion = FingerMotion(gripper.rate, gripper.settling, gripper.open_joints, gripper.faces)
+    motion = FingerMotion(gripper.rate, gripper.settling, gripper.open_joints, gripper.faces, gripper.sweep)
     set_finger_motion(key, motion)
     limits = (float(model.jnt_actfrcrange[model.joint(joint).id, 1]) for joint in joints)
     return RobotModel(
@@ -118,6 +126,7 @@ def _read_robot(source: ModelSource, name: str) -> RobotModel:
         doc=f"from {source.name}",
         source=source.name,
         gripper=gripper.kind,
+        tilt=turn,
     )
 
 
@@ -229,6 +238,23 @@ def _tool(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, pa
     mujoco.mju_mat2Quat(quaternion, frame.ravel())
     palm.add_site(name=TOOL, pos=place, quat=quaternion, group=HIDDEN)
     return TOOL
+
+
+def _face_ahead(spec: Any, model: Any, joints: tuple[str, ...], home: tuple[float, ...]) -> None:
+    """Turn the tool that was found by half a turn if its x axis then points ahead at home.
+
+    The fingers are interchangeable, and so the wrist turns as far to one side as to the other.
+    """
+    data: Any = mujoco.MjData(model)
+    for joint, value in zip(joints, home, strict=True):
+        data.qpos[model.joint(joint).qposadr[0]] = value
+    mujoco.mj_kinematics(model, data)
+    site = spec.site(TOOL)
+    place, ahead = data.site(TOOL).xpos, data.site(TOOL).xmat[0::3]
+    if place[:2] @ ahead[:2] < 0.0:
+        turned: FloatArray = np.empty(4)
+        mujoco.mju_mulQuat(turned, np.array(site.quat), np.array([0.0, 0.0, 0.0, 1.0]))
+        site.quat = turned
 
 
 def _servos(spec: Any, joints: tuple[str, ...]) -> None:

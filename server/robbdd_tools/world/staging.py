@@ -20,6 +20,8 @@ from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name, shape_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
+from robbdd_tools.world.tilted_base import upright_part
+from robbdd_tools.world.tilted_robots import tilted
 
 if TYPE_CHECKING:
     from robbdd_tools.base.articulation import Opening
@@ -181,12 +183,14 @@ class Staging:
         chosen = self._source(element)
         if chosen is None:
             return None
+        placed = self.pose(element)
+        tilt = None if placed is None else upright_part(placed)[1]
         if chosen.kind == "catalog":
             found = load_catalog().robots.get(chosen.name)
             if found is None:
                 raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
-            return found
-        found = robot_from(chosen, element)
+            return tilted(found, tilt, chosen)
+        found = robot_from(chosen, element, tilt)
         if not any(element in (friction.first, friction.second) for friction in self.frictions):
             refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
         return found
@@ -206,13 +210,9 @@ class Staging:
         return None if transform is None else _pose(transform)
 
     def base(self, element: str) -> Pose | None:
-        """Return the pose of an agent's base. Raises ``SceneError`` if the base does not stand upright."""
+        """Return the upright pose of an agent's base, from which its robot may be tilted. Raises ``SceneError``."""
         pose = self.pose(element)
-        if pose is not None and pose.rotation:
-            chosen = self._source(element)
-            origin = None if chosen is None else chosen.origin
-            raise SceneError(f"the base of '{element}' is tilted: only upright arms are supported", origin=origin)
-        return pose
+        return None if pose is None else upright_part(pose)[0]
 
     def origin(self, element: str) -> Origin | None:
         """Return the source position at which the scene defines an element or a model of the whole scene.

@@ -1,0 +1,83 @@
+"""Bases that hang or lean: an upright base at the same place, from which the arm is turned.
+
+So all controllers see an upright base whose x axis points ahead, and tools point down from a ceiling, too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import atan2, cos, hypot, sin
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.pose import Pose
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+Quaternion = tuple[float, float, float, float]
+"""w, x, y, z."""
+UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
+LYING = 0.1
+"""Length of an axis' horizontal part from which on its direction is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tilt:
+    """The rotation (w, x, y, z) of a base from its upright one, and its height (m, rounded) in the world frame."""
+
+    rotation: Quaternion
+    height: float
+
+
+def upright_part(pose: Pose) -> tuple[Pose, Tilt | None]:
+    """Return the upright pose of a base, and the tilt of the base from it, if any.
+
+    Ahead is where the x axis of the base points to; if that is vertical, as that of an arm on a wall may be, it is
+    where the z axis points to.
+    """
+    if not pose.rotation:
+        return pose, None
+    axes = np.empty(9)
+    mujoco.mju_quat2Mat(axes, np.array(pose.rotation))
+    x, z = axes[0::3], axes[2::3]
+    ahead = x if hypot(x[0], x[1]) > LYING else z
+    yaw = atan2(ahead[1], ahead[0])
+    tilt: FloatArray = np.empty(4)
+    mujoco.mju_mulQuat(tilt, about_vertical(-yaw), np.array(pose.rotation))
+    w, i, j, k = (round(float(part), 9) for part in tilt)
+    return replace(pose, yaw=yaw, rotation=()), Tilt((w, i, j, k), round(pose.position[2], 2))
+
+
+def about_vertical(yaw: float) -> FloatArray:
+    """Return the quaternion (4,) of a rotation about the vertical (rad)."""
+    return np.array([cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)])
+
+
+def rotation_of(yaw: float, tilt: Quaternion) -> list[float]:
+    """Return the quaternion of a base that is turned about the vertical (rad) and tilted."""
+    if tilt == UPRIGHT:
+        return [cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)]
+    whole: FloatArray = np.empty(4)
+    mujoco.mju_mulQuat(whole, about_vertical(yaw), np.array(tilt))
+    return [float(part) for part in whole]
+
+
+def tilt_model(model: Any, tilt: Quaternion) -> None:
+    """Turn everything in the compiled model of an arm about the origin of its base."""
+    if tilt == UPRIGHT:
+        return
+    turn = np.array(tilt)
+    first = model.body_parentid == 0
+    first[0] = False
+    for places, rotations, own in (
+        (model.body_pos, model.body_quat, first),
+        (model.geom_pos, model.geom_quat, model.geom_bodyid == 0),
+        (model.site_pos, model.site_quat, model.site_bodyid == 0),
+    ):
+        for number in np.flatnonzero(own):
+            place, rotation = places[number].copy(), rotations[number].copy()
+            mujoco.mju_rotVecQuat(places[number], place, turn)
+            mujoco.mju_mulQuat(rotations[number], turn, rotation)
