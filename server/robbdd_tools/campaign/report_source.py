@@ -14,7 +14,7 @@ from robbdd_tools.run.json_documents import NoTrace, stored_curves
 if TYPE_CHECKING:
     from robbdd_tools.campaign.report_moments import Moment, Moments
     from robbdd_tools.campaign.study_again import Again
-    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.run.study_reader import StudyReader
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
     from robbdd_tools.workbench.stored import PastRun
 
@@ -63,7 +63,7 @@ def run_report(run: PastRun) -> ReportSource:
     return ReportSource(title, run.results, run.status.words(), environment, command, curves)
 
 
-def study_report(name: str, store: StudyStore) -> ReportSource:
+def study_report(name: str, store: StudyReader) -> ReportSource:
     """Return what the report of a study shows; ``name`` is that of its file. Raises ``DatabaseProblem``."""
     facts = store.facts()
     results = study_executions(store.rows())

@@ -8,27 +8,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.campaign.study_file import SUFFIX
-from robbdd_tools.campaign.study_run import open_results, study_folder
-from robbdd_tools.run.study_store import NAME
+from robbdd_tools.campaign.study_place import has_results, open_results, study_folder
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.study_store import StudyStore
+    from robbdd_tools.run.study_reader import StudyReader
 
 
 def names_study(word: str) -> bool:
     """Return whether a word of the command line names a study: its file, or a folder with its results."""
-    return word.endswith(SUFFIX) or _has_results(word)
+    return word.endswith(SUFFIX) or has_results(Path(word))
 
 
 @contextmanager
-def stored_study(word: str, store: Path | None) -> Generator[StudyStore]:
+def stored_study(word: str, store: Path | None) -> Generator[StudyReader]:
     """Open the results of the study that ``word`` names; ``store`` is another folder of results.
 
     Raises ``StudyProblem`` if there are none, and ``DatabaseProblem``.
     """
-    with open_results(Path(word) if _has_results(word) else study_folder(Path(word), store)) as results:
+    with open_results(Path(word) if has_results(Path(word)) else study_folder(Path(word), store)) as results:
         yield results
-
-
-def _has_results(word: str) -> bool:
-    return (Path(word) / NAME).is_file()
