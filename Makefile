@@ -96,16 +96,18 @@ docs: $(READY) playground
 	$(BIN)/sphinx-build -q -W --keep-going -c docs/site build/pages build/site
 	$(BIN)/sphinx-build -q -b man -c docs/site build/pages build/man
 
-# The page of the site in which the language core runs, build/extra/playground.
+# The page of the site in which the language core runs, build/extra/playground, with executions to replay.
 # Its packages are installed outside of docs/, whose pages are searched.
 PLAYGROUND := docs/site/playground
-playground: $(READY)
+playground: $(READY) $(CLIENT_READY)
 	mkdir -p build/playground
 	cp $(PLAYGROUND)/*.* $(PLAYGROUND)/.npmrc build/playground
 	cd build/playground && npm ci --no-audit --no-fund --silent
 	rm -rf build/extra && mkdir -p build/extra
+	cd $(CLIENT) && npm run --silent answers
 	node build/playground/build.mjs build/extra/playground
 	$(BIN)/python $(PLAYGROUND)/bundle.py build/extra/playground/core.zip
+	$(BIN)/python $(PLAYGROUND)/recordings.py build/extra/playground/recordings
 
 # What a release consists of: wheel, source distribution and VSIX, in dist/. Dated by the commit, so that anyone can make the
 # same bytes from it.

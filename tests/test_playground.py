@@ -6,8 +6,12 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+import jsonschema
 import pytest
 from language_core import Playground, serve
+from recordings import RECORDED, record
+
+from kit import DOCS, ROOT
 
 MODEL = "pickplace.bdd"
 
@@ -31,6 +35,7 @@ def test_each_file_of_each_example_is_without_an_error_and_has_a_graph(call: Cal
             assert "@prefix" in call("graph", name)
             if name.endswith(".bdd"):
                 assert "Feature:" in call("feature", name)
+                assert call("picture", name).startswith("<svg")
 
 
 def test_places_are_those_of_javascript(call: Callable[..., Any]) -> None:
@@ -58,3 +63,12 @@ def test_a_violated_shape_is_found(call: Callable[..., Any]) -> None:
     call("change", MODEL, text.replace("{ <cubes.cube0>, <balls.ball0> }", "{ <places.left_ws> }"))
     found = [*call("check", MODEL)["findings"], *call("validate", MODEL)]
     assert any(one["code"].startswith("shacl-") for one in found)
+
+
+@pytest.mark.physics
+def test_a_recording_has_the_form_of_the_servers_answer_and_no_path() -> None:
+    answer = record("pickplace", RECORDED["pickplace"])
+    jsonschema.validate(answer, json.loads((DOCS / "schemas" / "trace.schema.json").read_text(encoding="utf-8")))
+    assert {clause["name"] for clause in answer["clauses"]} >= {"in-hand", "at-goal"}
+    assert str(ROOT) not in json.dumps(answer)
+    assert RECORDED.keys() <= {path.name for path in (ROOT / "examples").iterdir()}

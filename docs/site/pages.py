@@ -66,7 +66,9 @@ TOP = ("ARCHITECTURE", "CONTRIBUTING", "SECURITY")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\((?!\w+:)([^)#\s]*)(#[^)\s]*)?\)")
 PLAYGROUND = """# Playground
 
-Edit a model and see its problems, its Gherkin and its graph. Everything runs in this page; nothing is sent anywhere.
+Edit a model and see its problems, its Gherkin and its graph, as text and as a picture. *Replay* shows recorded
+executions in three dimensions, with the margins of their clauses over time. Everything runs in this page; nothing is
+sent anywhere.
 It has to be served: `python -m http.server --directory build/site`.
 
 <iframe src="playground/index.html" title="Playground" style="width: 100%; height: 42rem; border: 1px solid"></iframe>

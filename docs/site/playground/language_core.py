@@ -118,6 +118,12 @@ class Playground:
 
         return serialize(build_graph(self._now(), FOLDER + name).graph, "ttl")
 
+    def picture(self, name: str) -> str:
+        """Return a picture of the knowledge graph of a file as SVG."""
+        from robbdd_tools.features.graph_picture import graph_picture
+
+        return graph_picture(self._now(), FOLDER + name).svg
+
     def _now(self) -> Snapshot:
         return self._project.snapshot()
 

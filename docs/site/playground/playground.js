@@ -1,4 +1,4 @@
-// The playground: an editor for the files of an example; beside it their findings, their Gherkin and their graph.
+// The playground: an editor for the files of an example; next to it their findings, Gherkin and graph, and a recorded execution.
 import { autocompletion } from "@codemirror/autocomplete";
 import { setDiagnostics } from "@codemirror/lint";
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
@@ -35,6 +35,8 @@ function ask(method, ...args) {
 
 const element = (id) => document.getElementById(id);
 const texts = new Map();
+/** The texts as the example has them. */
+const opened = new Map();
 let current;
 let revision = 0;
 let timer;
@@ -145,6 +147,12 @@ async function derive(own) {
       }
       element(id).textContent = text;
     }
+    if (current.endsWith(".bdd")) {
+      const drawing = await ask("picture", current);
+      if (own === revision) {
+        element("picture").innerHTML = drawing;
+      }
+    }
   } catch (error) {
     element("state").textContent = error.message.split("\n").at(-2) ?? error.message;
   }
@@ -193,8 +201,10 @@ function choose(name) {
 
 async function openExample(name) {
   texts.clear();
+  opened.clear();
   for (const [file, text] of Object.entries(await ask("open", name))) {
     texts.set(file, text);
+    opened.set(file, text);
   }
   const tabs = [...texts.keys()].map((file) => {
     const tab = document.createElement("button");
@@ -205,6 +215,73 @@ async function openExample(name) {
   });
   element("files").replaceChildren(...tabs);
   choose(tabs[0].textContent);
+  replay();
+}
+
+const recorded = await fetch("recordings/index.json").then((answer) => answer.json());
+/** The page that replays the current example, made when it is first shown. */
+let player;
+/** The recorded execution in it. */
+let shown;
+/** A place that the page of the replay only compares with none: the text may be edited until it is looked up. */
+const SOMEWHERE = { uri: "", range: { start: { line: 0, character: 0 }, end: { line: 0, character: 0 } } };
+
+/** Show the recorded execution of the current example, if that view is open. */
+function replay() {
+  player?.remove();
+  player = undefined;
+  const example = element("example").value;
+  const known = recorded.includes(example);
+  element("unrecorded").hidden = known;
+  element("unrecorded").textContent = `No execution of ${example} is recorded here; those of ${recorded.join(", ")} are.`;
+  if (known && !element("replay").hidden) {
+    player = document.createElement("iframe");
+    player.title = "Replay";
+    player.src = "replay.html";
+    element("replay").append(player);
+  }
+}
+
+/** Answer the page of the replay as the editor does. */
+addEventListener("message", async ({ data, source }) => {
+  if (player === undefined || source !== player.contentWindow) {
+    return;
+  }
+  const to = player.contentWindow;
+  if (data.type === "ready") {
+    const trace = await fetch(`recordings/${element("example").value}.json`).then((answer) => answer.json());
+    const clauses = trace.clauses.map((clause) => ({ ...clause, source: fileOf(clause.name) === undefined ? null : SOMEWHERE }));
+    shown = { ...trace, clauses };
+    to.postMessage({ type: "trace", recording: { uri: "" }, trace: shown }, location.origin);
+    if ([...texts].some(([file, text]) => text !== opened.get(file))) {
+      to.postMessage({ type: "age", text: "The text has been edited since this execution was recorded." }, location.origin);
+    }
+  } else if (data.type === "open") {
+    reveal(shown.clauses[data.clause].name);
+  } else if (data.type === "picture") {
+    const link = document.createElement("a");
+    link.href = `data:image/png;base64,${data.data}`;
+    link.download = "replay.png";
+    link.click();
+  } else if (data.type === "link") {
+    to.postMessage({ type: "said", words: "Links to moments work in an editor." }, location.origin);
+  }
+});
+
+/** The file that has a clause of a recorded execution now. */
+function fileOf(name) {
+  return [...texts.keys()].find((file) => texts.get(file).includes(`${name}: holds`));
+}
+
+/** Select a clause of a recorded execution in the text. */
+function reveal(name) {
+  const file = fileOf(name);
+  if (file !== undefined) {
+    choose(file);
+    const anchor = texts.get(file).indexOf(`${name}: holds`);
+    view.dispatch({ selection: { anchor, head: anchor + name.length }, scrollIntoView: true });
+    view.focus();
+  }
 }
 
 for (const tab of document.querySelectorAll("#views button")) {
@@ -212,6 +289,9 @@ for (const tab of document.querySelectorAll("#views button")) {
     for (const other of document.querySelectorAll("#views button")) {
       other.setAttribute("aria-selected", String(other === tab));
       element(other.dataset.view).hidden = other !== tab;
+    }
+    if (tab.dataset.view === "replay" && player === undefined) {
+      replay();
     }
   });
 }

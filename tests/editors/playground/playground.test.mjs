@@ -9,7 +9,8 @@ import { CHROMIUM, ROOT, SCREENSHOTS, playwright, required } from "../workbench/
 import { LONG, PATIENCE } from "../workbench/harness/patience.mjs";
 
 const FOLDER = join(ROOT, "build/extra/playground");
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".wasm": "application/wasm" };
+const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".mjs": "text/javascript", ".wasm": "application/wasm" };
 
 let server;
 let browser;
@@ -26,7 +27,7 @@ before(async () => {
     answer.end(content);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox"], timeout: PATIENCE });
+  browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", ...WEBGL], timeout: PATIENCE });
   page = await browser.newPage({ viewport: { width: 1300, height: 1500 } });
   page.setDefaultTimeout(PATIENCE);
   await page.route(
@@ -59,6 +60,47 @@ test("Gherkin and graph are those of the model", async () => {
   await show("Graph");
   await page.locator("#graph", { hasText: "bdd:ScenarioTemplate" }).waitFor();
   await show("Problems");
+});
+
+test("the graph is drawn", async () => {
+  await show("Picture");
+  await page.locator("#picture svg", { hasText: "tidy-bench" }).waitFor();
+  await show("Problems");
+});
+
+test("a recorded execution is replayed in three dimensions", async () => {
+  await show("Replay");
+  const frame = page.frameLocator("#replay iframe");
+  await frame.locator(".stage canvas").waitFor({ timeout: LONG });
+  await frame.locator(".label", { hasText: "cube0" }).waitFor();
+  const style = () => frame.locator(".label", { hasText: "cube0" }).getAttribute("style");
+  const before = await style();
+  await frame.getByRole("slider", { name: "Time" }).press("End");
+  await frame.locator(".readout", { hasText: "10.27 / 10.27 s" }).waitFor();
+  for (const end = Date.now() + LONG; (await style()) === before; ) {
+    assert.ok(Date.now() < end, "the name of the cube has not moved with it");
+    await page.waitForTimeout(50);
+  }
+  await page.screenshot({ path: join(SCREENSHOTS, "playground-replay.png") });
+  await accessible(frame, "the replay of the playground");
+});
+
+test("a clause of the replay leads to its text", async () => {
+  const frame = page.frameLocator("#replay iframe");
+  await frame.getByRole("button", { name: "Go to the text of in-hand" }).click();
+  await page.waitForFunction(() => getSelection().toString() === "in-hand");
+});
+
+test("the violated moment of another example is shown, and the lack of a recording is stated", async () => {
+  await page.getByLabel("Example").selectOption("deadlines");
+  const frame = page.frameLocator("#replay iframe");
+  await frame.locator(".title", { hasText: "two-limits 2" }).waitFor({ timeout: LONG });
+  await frame.locator(".readout", { hasText: /^5\.\d\d / }).waitFor();
+  await page.getByLabel("Example").selectOption("limits");
+  await page.getByText("No execution of limits is recorded here").waitFor();
+  await page.getByLabel("Example").selectOption("pickplace");
+  await show("Problems");
+  await state("ready");
 });
 
 test("a mistake is underlined and listed, and its quick fix corrects it", async (context) => {
