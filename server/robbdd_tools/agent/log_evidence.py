@@ -100,7 +100,10 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 
 
 def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
-    """Return the events of a scenario in a log. Without a report, the scenario starts and ends with the log."""
+    """Return the events of a scenario in a log. Without a report, it starts and ends with the log.
+
+    The end of a log whose recording was interrupted is not that of the scenario.
+    """
     stamps: list[EventStamp] = []
     iterations = {**_awaited(spec), **iterations_of_events(spec)}
     for event, emitter in spec.events.items():
@@ -111,7 +114,9 @@ def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tu
             numbers = chain(sorted(iterations.get(event, ())), count(1 + max(iterations.get(event, ()), default=0)))
             stamps += (EventStamp(event, time, number) for number, time in zip(numbers, times, strict=False))
             continue
-        if not times:
+        if not times and emitter == END and contents.unfinished:
+            remarks.append(f"the log does not report {event}, and its recording did not end: when it was is not known")
+        elif not times:
             times = [0.0 if emitter == START else contents.end]
             remarks.append(f"the log does not report {event}: the {emitter.rpartition('-')[2]} of the log counts")
         stamps += (EventStamp(event, time) for time in times)

@@ -26,6 +26,7 @@ LOG = "foxglove.Log"
 JOINTS = "foxglove.JointStates"
 ROS_JOINTS = ("sensor_msgs/JointState", "sensor_msgs/msg/JointState")
 """The type of ROS, as bridges write it with JSON messages."""
+ROS_PROFILE = "ros2"
 OWN_TRACE = "robbdd-trace-1"
 """Encoding of the exact trace in the traces of simulated runs."""
 
@@ -43,6 +44,16 @@ def encodings(path: Path) -> set[str]:
     return found
 
 
+def is_uniform(path: Path) -> bool:
+    """Return whether all messages of an MCAP file are in JSON, or its profile is that of ROS 2.
+
+    Raises ``UnreadableLog``.
+    """
+    found = encodings(path)
+    with open_regular(path) as file:
+        return found == {"json"} or ("json" not in found and make_reader(file).get_header().profile == ROS_PROFILE)
+
+
 def read_foxglove(path: Path, signals: Iterable[EventSignal] = ()) -> LogContents:
     """Return the contents of an MCAP file with JSON messages: transforms, poses and texts.
 
@@ -52,7 +63,7 @@ def read_foxglove(path: Path, signals: Iterable[EventSignal] = ()) -> LogContent
     try:
         for topic, kind, received, message in _messages(path, watch.topics):
             if kind in READ:
-                _take(found, topic, kind, received, message)
+                take_json(found, topic, kind, received, message)
             for event in watch.events(topic, message) if topic in watch.topics else ():
                 found.text(topic, received, event)
         watch.check(_topics(path) if watch.topics else ())
@@ -64,7 +75,8 @@ def read_foxglove(path: Path, signals: Iterable[EventSignal] = ()) -> LogContent
     return replace(contents, remarks=(*watch.remarks, *contents.remarks))
 
 
-def _take(found: LogCollector, topic: str, kind: str, received: int, message: Any) -> None:
+def take_json(found: LogCollector, topic: str, kind: str, received: int, message: Any) -> None:
+    """Take a message of one of the types ``READ``."""
     match kind:
         case "foxglove.FrameTransforms":
             for one in message["transforms"]:

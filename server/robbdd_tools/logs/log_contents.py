@@ -72,6 +72,7 @@ class LogContents:
     - ``joints``: maps a topic of joint states, and the name of a joint in them, to its states.
     - ``forces``: maps a topic of wrenches to the sizes of their forces, N, as ``positions``.
     - ``end``: the time of the last message, s since the first.
+    - ``unfinished``: true if the recording goes on, or was interrupted: its end is not that of what was recorded.
     - ``remarks``: sentences on how the log was read, for example a clock offset that was corrected.
     """
 
@@ -82,6 +83,7 @@ class LogContents:
     truths: Mapping[str, Truths] = field(default_factory=dict[str, Truths])
     joints: Mapping[str, Mapping[str, JointTrack]] = field(default_factory=dict[str, Mapping[str, JointTrack]])
     forces: Mapping[str, JointTrack] = field(default_factory=dict[str, JointTrack])
+    unfinished: bool = False
 
 
 @dataclass

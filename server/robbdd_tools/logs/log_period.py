@@ -33,6 +33,7 @@ def cut(contents: LogContents, begin: float, end: float | None) -> LogContents:
         tracks=tracks,
         texts=tuple(replace(one, time=one.time - begin) for one in contents.texts if begin <= one.time <= until),
         end=until - begin,
+        unfinished=contents.unfinished and until == contents.end and end is None,
         truths={topic: _truths(one, begin, until) for topic, one in contents.truths.items()},
         joints={topic: {name: one for name, one in found.items() if len(one.times)} for topic, found in joints.items()},
         forces={

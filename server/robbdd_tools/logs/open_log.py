@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.logs.foxglove_mcap import encodings, read_foxglove
+from robbdd_tools.logs.foxglove_mcap import encodings, is_uniform, read_foxglove
+from robbdd_tools.logs.growing_mcap import is_cut, read_mcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.log_table import read_table
 from robbdd_tools.logs.ros_bag import read_ros_bag
@@ -20,7 +21,14 @@ SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
 
 def is_log(path: Path) -> bool:
     """Return whether a path is a log, by its name: a bag, a file of a bag, or a table."""
-    return (path / METADATA).is_file() or (path.suffix.lower() in SUFFIXES and path.is_file())
+    if path.is_dir():
+        return (path / METADATA).is_file() or bool(bag_files(path))
+    return path.suffix.lower() in SUFFIXES and path.is_file()
+
+
+def bag_files(folder: Path) -> list[Path]:
+    """Return the files of a rosbag2 folder in the order of their names."""
+    return sorted(one for one in folder.iterdir() if one.suffix.lower() in (".db3", ".mcap") and one.is_file())
 
 
 def read_log(
@@ -36,10 +44,12 @@ def read_log(
     Raises ``UnreadableLog``.
     """
     if path.is_dir():
-        return _checked(path, read_ros_bag(path, clocks, signals))
+        return _checked(path, _read_folder(path, clocks, signals))
     match path.suffix.lower():
         case ".csv":
             found = read_table(path, columns)
+        case ".mcap" if is_cut(path) or not is_uniform(path):
+            return _checked(path, read_mcap(path, clocks or {}, signals))
         case ".mcap" if "json" in encodings(path):
             found = read_foxglove(path, signals)
         case ".bag" | ".db3" | ".mcap":
@@ -51,6 +61,18 @@ def read_log(
     if clocks:
         raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for ROS bags only")
     return _checked(path, found)
+
+
+def _read_folder(path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]) -> LogContents:
+    """Return the contents of a rosbag2 folder. An interrupted recording has no metadata, and a file without an end."""
+    files = bag_files(path)
+    if len(files) == 1 and files[0].suffix.lower() == ".mcap" and is_cut(files[0]):
+        return read_mcap(files[0], clocks or {}, signals)
+    if (path / METADATA).is_file():
+        return read_ros_bag(path, clocks, signals)
+    if len(files) != 1:
+        raise UnreadableLog(f"{path} has no {METADATA} and several files: write it with 'ros2 bag reindex {path.name}'")
+    return read_ros_bag(files[0], clocks, signals)
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:

@@ -47,18 +47,16 @@ def read_ros_bag(
                 if (one.msgtype in READERS or one.topic in watch.topics) and one.msgtype in defined
             ]
             watch.check({one.topic for one in reader.connections})
-            contents.remarks += _not_read([one for one in reader.connections if one not in wanted], defined)
+            contents.remarks += not_read(
+                {one.topic: str(one.msgtype) for one in reader.connections if one not in wanted}, defined
+            )
             stamped = {one.topic: str(one.msgtype) for one in wanted if one.msgtype in READERS}
-            ahead = dict(_clocks(clocks or {}, stamped))
+            ahead = dict(stated_clocks(clocks or {}, stamped))
             for connection, received, raw in reader.messages(connections=wanted) if wanted else ():
                 topic = f": '{connection.topic}' ({connection.msgtype})"
                 message = reader.deserialize(raw, connection.msgtype)
                 contents.ahead = ahead.get(connection.topic, 0)
-                if connection.msgtype in READERS:
-                    READERS[connection.msgtype](contents, connection.topic, received, message)
-                if connection.topic in watch.topics:
-                    for event in watch.events(connection.topic, message):
-                        contents.found.text(connection.topic, received, event)
+                take_message(contents, watch, (connection.topic, connection.msgtype), received, message)
                 topic = ""
         contents.remarks += watch.remarks
         return contents.finish()
@@ -68,9 +66,19 @@ def read_ros_bag(
         raise UnreadableLog(f"{path} cannot be read as a ROS bag{topic}: {error or type(error).__name__}") from error
 
 
-def _not_read(connections: Iterable[Any], defined: Collection[str]) -> list[str]:
-    """Return sentences on the topics that are not read: those of other types, and those without a definition."""
-    topics = {one.topic: str(one.msgtype) for one in connections}
+def take_message(
+    contents: RosContents, watch: EventWatch, channel: tuple[str, str], received: int, message: Any
+) -> None:
+    """Take a decoded message of a channel (topic and type), and the events that it reports."""
+    topic, kind = channel
+    if kind in READERS:
+        READERS[kind](contents, topic, received, message)
+    for event in watch.events(topic, message) if topic in watch.topics else ():
+        contents.found.text(topic, received, event)
+
+
+def not_read(topics: Mapping[str, str], defined: Collection[str]) -> list[str]:
+    """Return sentences on topics (→ types) that are not read: those of other types, and those without a definition."""
     other = sorted(f"{topic} ({kind})" for topic, kind in topics.items() if kind not in READERS)
     missing = {topic: kind for topic, kind in topics.items() if kind in READERS and kind not in defined}
     listed = ", ".join(other[:MAX_LISTED]) + (f" and {len(other) - MAX_LISTED} more" if len(other) > MAX_LISTED else "")
@@ -80,7 +88,7 @@ def _not_read(connections: Iterable[Any], defined: Collection[str]) -> list[str]
     ]
 
 
-def _clocks(stated: Mapping[str, float], known: Mapping[str, str]) -> Iterator[tuple[str, int]]:
+def stated_clocks(stated: Mapping[str, float], known: Mapping[str, str]) -> Iterator[tuple[str, int]]:
     """Yield each topic with the time (ns) by which its headers are ahead. Raises ``UnreadableLog``."""
     for topic, seconds in stated.items():
         if topic not in known:
