@@ -64,6 +64,8 @@ COMMANDS = (
     "replay latest --store runs --force",
     "compare latest latest --store runs",
     "report latest -o report.html --store runs",
+    "evidence pack latest -o evidence.zip --store runs",
+    "evidence verify evidence.zip",
     "study run one.study --store studies",
     "study status one.study --store studies",
     "study outcomes one.study --store studies",

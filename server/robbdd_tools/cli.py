@@ -23,6 +23,7 @@ from robbdd_tools.catalog.registry import problems_of_words
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
+from robbdd_tools.commands.evidence_arguments import add_evidence
 from robbdd_tools.commands.falsify_arguments import add_falsify
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.mutate_arguments import add_mutate
@@ -144,6 +145,7 @@ def argument_parser() -> argparse.ArgumentParser:
     stored = add_commands_of_runs(commands)
     studies = add_study(commands.add_parser("study", help="execute the combinations of a .study file many times"))
 
+    add_evidence(commands.add_parser("evidence", help="write the evidence of a run as one file; check such a file"))
     mutated = commands.add_parser("mutate", help="give the simulated robots faults, and show which clauses notice them")
     add_mutate(mutated)
     searched = commands.add_parser("falsify", help="search the ranges of a .study file for a failure near to nominal")

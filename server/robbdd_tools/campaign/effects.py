@@ -40,6 +40,8 @@ class RateEffect:
     - ``gained``, ``lost``: executions that hold only after, or only before; known verdicts of the same scenarios.
     - ``worse``, ``better``: p-values of the tests against no change, with the unknown executions counted as speaks
       against that result.
+    - ``least_worse``, ``least_better``: the smallest p-values that these tests could have with as many flips, or with
+      as many executions that hold.
     """
 
     difference: float | None
@@ -48,6 +50,8 @@ class RateEffect:
     lost: int
     worse: float
     better: float
+    least_worse: float
+    least_better: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +96,8 @@ def rate_effect(clause: MatchedClause, level: float, *, paired: bool) -> RateEff
         lost,
         _probability(most, paired=paired) if _change(most) < 0 else 1.0,
         _probability(least, paired=paired) if _change(least) > 0 else 1.0,
+        _least_probability(most, paired=paired),
+        _least_probability(least, paired=paired),
     )
 
 
@@ -136,6 +142,16 @@ def _interval(pairs: Sequence[tuple[bool, bool]], level: float, *, paired: bool)
 
 def _probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> float:
     return paired_probability(*_flips(pairs)) if paired else separate_probability(*_sides(pairs))
+
+
+def _least_probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> float:
+    """Return the smallest p-value with the same number of flips; of independent runs, of executions that hold."""
+    if paired:
+        return paired_probability(0, sum(_flips(pairs)))
+    (first, total), (second, _) = _sides(pairs)
+    holding = first + second
+    extremes = {min(holding, total), max(0, holding - total)}
+    return min(separate_probability((one, total), (holding - one, total)) for one in extremes)
 
 
 def _margin_test(

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import accumulate
 
 from robbdd_tools.campaign.effects import MarginEffect, Rate, RateEffect, margin_effect, rate, rate_effect
 from robbdd_tools.campaign.gate import Gate
 from robbdd_tools.campaign.matched_executions import MatchedClause, MatchedRuns, match
-from robbdd_tools.campaign.rates import LEVEL
+from robbdd_tools.campaign.multiple_tests import Test, corrected
+from robbdd_tools.campaign.rates import LEVEL, Interval
+from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.workbench.execution_rows import ExecutionResult
 
 
@@ -86,13 +87,14 @@ def compare_results(
 
     Executions with the same seed in both runs are compared in pairs: McNemar's exact test for pass rates, the paired
     t-test for margins. Otherwise the runs are independent samples: Fisher's exact test, Welch's t-test. The p-values
-    are corrected by Holm's method (1979).
+    are corrected for their number (``multiple_tests``).
     """
     chosen = options or ComparisonOptions()
     matched = match(before, after)
     found = [_measured(clause, chosen.level, paired=matched.paired) for clause in matched.clauses]
-    worse = _corrected([value for one in found for value in one.worse(by_margin=chosen.by_margin)])
-    better = _corrected([value for one in found for value in one.better(by_margin=chosen.by_margin)])
+    alpha = 1.0 - chosen.level
+    worse = corrected([value for one in found for value in one.worse(by_margin=chosen.by_margin)], alpha)
+    better = corrected([value for one in found for value in one.better(by_margin=chosen.by_margin)], alpha)
     effects: list[ClauseEffect] = []
     used = 0
     for one in found:
@@ -109,29 +111,28 @@ class _Measured:
     rates: RateEffect
     margins: MarginEffect | None
 
-    def worse(self, *, by_margin: bool) -> list[float]:
-        return [self.rates.worse, *([self._margin(-1)] if by_margin else [])]
+    def worse(self, *, by_margin: bool) -> list[Test]:
+        rates = Test(self.rates.worse, self.rates.least_worse, self._verdicts)
+        return [rates, *([self._margin(-1)] if by_margin else [])]
 
-    def better(self, *, by_margin: bool) -> list[float]:
-        return [self.rates.better, *([self._margin(1)] if by_margin else [])]
+    def better(self, *, by_margin: bool) -> list[Test]:
+        rates = Test(self.rates.better, self.rates.least_better, self._verdicts)
+        return [rates, *([self._margin(1)] if by_margin else [])]
 
-    def _margin(self, direction: int) -> float:
-        """Return the p-value of a margin that moved in a direction; missing margins show nothing."""
-        if self.margins is None or self.margins.difference * direction <= 0:
-            return 1.0
-        return self.margins.probability if not self.margins.missing else 1.0
+    @property
+    def _verdicts(self) -> tuple[tuple[Outcome, ...], ...]:
+        """The verdicts of both runs, which are the same for all clauses together if one clause decides alone."""
+        return tuple(tuple(one.verdict for one in side) for side in (self.clause.before, self.clause.after))
+
+    def _margin(self, direction: int) -> Test:
+        """Return the test of a margin that moved in a direction; missing margins show nothing."""
+        if self.margins is None or self.margins.missing or self.margins.interval == Interval(0.0, 0.0):
+            return Test(1.0, 1.0)
+        return Test(1.0 if self.margins.difference * direction <= 0 else self.margins.probability)
 
 
 def _measured(clause: MatchedClause, level: float, *, paired: bool) -> _Measured:
     return _Measured(clause, rate_effect(clause, level, paired=paired), margin_effect(clause, level, paired=paired))
-
-
-def _corrected(values: Sequence[float]) -> list[float]:
-    """Correct p-values for their number by Holm's method."""
-    order = sorted(range(len(values)), key=values.__getitem__)
-    scaled = (min(1.0, values[index] * (len(values) - place)) for place, index in enumerate(order))
-    corrected = dict(zip(order, accumulate(scaled, max), strict=True))
-    return [corrected[index] for index in range(len(values))]
 
 
 def _effect(

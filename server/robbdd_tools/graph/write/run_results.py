@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from base64 import urlsafe_b64encode
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 OUTCOMES = {"holds": "earl:passed", "violated": "earl:failed", "unknown": "earl:cantTell"}
 """Verdict → EARL's outcome value."""
 Json = Mapping[str, Any]
+_NO_IRI = frozenset('<>" {}|\\^`')
+"""Characters that no IRI has: a text with one of them is a literal."""
 
 
 class BadResults(Exception):
@@ -39,13 +42,30 @@ def read_results(text: str) -> Json:
 
 def add_results(graph: Graph, document: Json) -> None:
     """Add the results of a run to the graph of its model; raises ``BadResults``."""
-    digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
     writer = _Writer(graph, user_prefixes(graph))
-    run = writer.node(f"urn:robbdd:run:{digest}", "prov:Activity", "rbw:Run")
+    run = writer.node(run_iri(document), "prov:Activity", "rbw:Run")
     writer.say(run, "rbw:seed", _field(document, "seed", int, "the run"))
     writer.say(run, "rbw:complete", _field(document, "complete", bool, "the run"))
     for number, entry in enumerate(_field(document, "scenarios", list, "the run"), start=1):
         writer.scenario(run, _object(entry, f"scenario {number}"), number)
+
+
+def run_iri(document: Json) -> str:
+    """Return the IRI of a run's node, named after the content of its results."""
+    digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+    return f"urn:robbdd:run:{digest}"
+
+
+def add_traces(graph: Graph, document: Json, digests: Mapping[int, str]) -> None:
+    """Add the traces of a run's executions as PROV entities that are named after their contents (RFC 6920).
+
+    ``digests`` are the SHA-256 (hexadecimal) of the trace of each execution by its position (from 0).
+    """
+    writer = _Writer(graph, {})
+    for index, digest in sorted(digests.items()):
+        name = urlsafe_b64encode(bytes.fromhex(digest)).decode("ascii").rstrip("=")
+        node = writer.node(f"ni:///sha-256;{name}", "prov:Entity")
+        writer.link(node, "prov:wasGeneratedBy", f"{run_iri(document)}/{index + 1}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +133,7 @@ class _Writer:
         self.link(run, "rbw:given-value", node)
         self.link(node, "rbw:of-variable", self._named(variable))
         for one in cast("list[object]", value) if isinstance(value, list) else [value]:
-            known = self._named(one) if isinstance(one, str) else None
+            known = self._named(one) if isinstance(one, str) and not _NO_IRI & set(one) else None
             if known is not None and (known, None, None) in self.graph:
                 self.link(node, "rbw:is-value", known)
             elif isinstance(one, str | int | float):
