@@ -5,9 +5,10 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from functools import cache
+from importlib import import_module
+from typing import Any
 
 import pytest
-from statsmodels.stats.multitest import multipletests
 
 from campaign.executed import executions
 from robbdd_tools.campaign.multiple_tests import Test, corrected
@@ -17,7 +18,8 @@ from robbdd_tools.campaign.run_comparison import Change, ComparisonOptions, comp
 
 @pytest.mark.parametrize("values", [[0.01, 0.04, 0.03], [0.5], [0.2, 0.2, 0.001, 0.9], [0.0, 1.0, 0.0499]])
 def test_without_exact_tests_it_is_holms_method(values: list[float]) -> None:
-    expected = multipletests(values, method="holm")[1]
+    library: Any = import_module("statsmodels.stats.multitest")
+    expected = library.multipletests(values, method="holm")[1]
     assert corrected([Test(value) for value in values], 0.05) == pytest.approx(list(expected))
 
 
@@ -38,7 +40,8 @@ def test_tests_of_the_same_data_are_one_test() -> None:
 def drawn(chance: random.Random, count: int, flips: float, drop: float) -> tuple[list[float], list[float]]:
     """Margins of pairs. A share of them flips, more for the worse than for the better by ``drop``; 90 % hold before."""
     lost, gained = (flips + drop) / 2, (flips - drop) / 2
-    before, after = [], []
+    before: list[float] = []
+    after: list[float] = []
     for _ in range(count):
         held = chance.random() < 0.9
         flipped = chance.random() < (lost / 0.9 if held else gained / 0.1)
@@ -50,16 +53,15 @@ def drawn(chance: random.Random, count: int, flips: float, drop: float) -> tuple
 def found_worse(pairs: tuple[Sequence[float], Sequence[float]], *, by_margin: bool = False) -> bool:
     """Whether a comparison of runs with ten clauses, of which one flips, calls that clause worse."""
     others = {f"c{number}": [0.1] * len(pairs[0]) for number in range(9)}
-    sides = (executions({"tested": side, **others}) for side in pairs)
-    found = compare_results(*sides, ComparisonOptions(by_margin=by_margin))
+    before, after = (executions({"tested": side, **others}) for side in pairs)
+    found = compare_results(before, after, ComparisonOptions(by_margin=by_margin))
     return next(one.change for one in found.effects if one.name == "tested") is Change.WORSE
 
 
 @cache
 def power_of_mcnemar(count: int, flips: float, drop: float) -> float:
     """The exact power of McNemar's exact test at 5 %, by adding the probabilities of all numbers of flips."""
-    from scipy.stats import binom
-
+    binom: Any = import_module("scipy.stats").binom
     total = 0.0
     for flipped in range(count + 1):
         share = float(binom.pmf(flipped, count, flips))
