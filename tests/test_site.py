@@ -49,6 +49,15 @@ def test_each_link_leads_to_a_page_of_the_site_and_nothing_is_loaded_from_elsewh
             assert not anchor or found not in pages or f'id="{anchor}"' in pages[found], (path.name, link)
 
 
+def test_each_example_has_a_page_with_its_picture(site: Path) -> None:
+    examples = {path.parent.name for path in (ROOT / "examples").glob("*/*.bdd")}
+    pictures = {path.stem for path in (DOCS / "images" / "examples").glob("*.png")}
+    assert pictures == examples, "run .venv/bin/python docs/site/example_pictures.py"
+    for name in examples:
+        text = (site / "examples" / f"{name}.html").read_text(encoding="utf-8")
+        assert f"{name}.png" in text
+
+
 def test_the_page_of_the_command_line_is_that_of_the_program() -> None:
     program = [sys.executable, "-c", "import command_line; print(command_line.page(), end='')"]
     printed = subprocess.run(program, cwd=DOCS / "site", capture_output=True, text=True, check=True).stdout

@@ -143,9 +143,10 @@ def site_place(target: Path) -> Path | None:
 
 
 def example_page(example: Path) -> str:
-    """Return the page of an example: its purpose, how to run it, its files."""
+    """Return the page of an example: its purpose, its picture, how to run it, its files."""
     models = sorted(example.glob("*.bdd"))
-    lines = [f"# {example.name}", "", *(text for model in models for text in purpose(model)), "", "```console"]
+    lines = [f"# {example.name}", "", *(text for model in models for text in purpose(model)), ""]
+    lines += [f"![The scene of {example.name}](../images/examples/{example.name}.png)", "", "```console"]
     lines += [f"$ robbdd new cell --template {example.name}", "$ robbdd run cell", "```", ""]
     files = sorted(
         (path for path in example.iterdir() if path.suffix in KINDS), key=lambda path: KINDS.index(path.suffix)
