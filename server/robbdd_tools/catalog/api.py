@@ -196,6 +196,7 @@ class Predicate:
     - ``duration``: of a predicate about the time between the events of ``from … until …``: ``evaluate`` is for plots.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
+    - ``synonyms``: words that users write for it. They are no form of it, but lead to it in the message on an error.
     """
 
     name: str
@@ -212,6 +213,7 @@ class Predicate:
     set_up: bool = False
     duration: DurationMargin | None = None
     measured: Literal["nothing", "length", "angle", "speed", "otherwise"] = "otherwise"
+    synonyms: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

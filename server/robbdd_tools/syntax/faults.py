@@ -6,11 +6,14 @@ import re
 from dataclasses import replace
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.quantity_units import UNITS
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.joined import joining_word
 from robbdd_tools.syntax.near_misses import near_miss, other_file
 from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
+from robbdd_tools.syntax.unknown_phrases import phrase_fault
 
 LONGEST_WORD = 40
 """Maximum number of characters of the user's text that a message repeats."""
@@ -30,6 +33,8 @@ _RULE_WORDS = {
     "ProviderPath": "the name of an observation provider",
     "PolicyPath": "the name of an observation policy",
 }
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?![\w%.])")
+_QUOTED_QUANTITY = re.compile(r"([\"'])([-+]?[\d.]+\s*(?:m/s|deg/s|deg|rad|mm|cm|ms|kg|g|m|s|N|%))\1")
 _EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
 _STARTS = frozenset({"import", "ns"})
 _PLACES = {
@@ -43,6 +48,7 @@ _UNJOINED = "clauses joined by '{0}' need parentheses around all of them: '( …
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
 _EMPTY = re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z")
 _GIVEN = re.compile(r"(?<![\w\-.])(Given)\s*:")
+_WHEN = re.compile(r"(?<![\w\-.])(?:When\s*:|for\s+all\b)")
 _NOTHING = "nothing is written between '{0}:' and '{1}': write what belongs to '{0}:' below it, or remove it"
 # The keyword of a part out of order is read as a clause name; these are the tokens then missing after it.
 _AS_NAMES = {
@@ -81,9 +87,9 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     joining = joining_word(text, rejected.offset) if ":" in rejected.expected.literals else None
     if joining is not None:
         return SyntaxFault(joining, _UNJOINED.format(text[joining.start : joining.end]))
-    near = near_miss(text, rejected)
-    if near is not None:
-        return near
+    known = phrase_fault(text, rejected) or _without_unit(text, rejected) or near_miss(text, rejected)
+    if known is not None:
+        return known
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
         return SyntaxFault(span, other_file(text, 0) or f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)
@@ -104,7 +110,8 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
         return SyntaxFault(Span(*label.span(1)), _NOTHING.format(label[1], "for all" if part[0] == "for" else part[0]))
     if text[rejected.offset : rejected.offset + 1] in ("", "}") and rejected.expected.literals >= {"When", "for"}:
         given = list(_GIVEN.finditer(text, 0, rejected.offset))
-        if given and "Given" not in rejected.expected.literals:
+        after = given and _WHEN.search(text, 0, given[-1].start())
+        if after and "Given" not in rejected.expected.literals:
             return SyntaxFault(Span(*given[-1].span(1)), _PLACES["Given"])
     if part is None and len(rejected.expected.literals) == 1:
         (missed,) = rejected.expected.literals
@@ -116,6 +123,34 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
         return None
     start = part.start()
     return SyntaxFault(Span(start, start + len(word)), _PLACES["for all" if word == "for" else word])
+
+
+def _without_unit(text: str, rejected: Rejected) -> SyntaxFault | None:
+    """Return the fault of a number without a unit, or of a quantity in quotes."""
+    if "QuantityLiteral" not in rejected.expected.rules:
+        return None
+    number = _NUMBER.match(text, rejected.offset)
+    if number is not None:
+        unit = _unit_after(text[: rejected.offset])
+        message = f"a number needs a unit here: write for example '{number[0]} {unit}', or name a variable"
+        return SyntaxFault(Span(*number.span()), message)
+    quoted = _QUOTED_QUANTITY.match(text, rejected.offset)
+    if quoted is None:
+        return None
+    fix = SyntaxFix(Span(*quoted.span()), quoted[2])
+    return SyntaxFault(fix.span, "a quantity is written without quotes", fix)
+
+
+def _unit_after(head: str) -> str:
+    """Return a unit of the quantity that follows the words at the end of a text."""
+    words = " ".join(head[-LONGEST_WORD:].split())
+    for word in load_catalog().predicates.values():
+        before, _, after = word.phrase.partition("#")
+        own = before.rpartition(">")[2].strip()
+        slot = next((slot for slot in word.slots if slot.name == after.partition(" ")[0]), None)
+        if slot is not None and own and words.endswith(own):
+            return next((unit for unit, (dimension, _) in UNITS.items() if dimension == slot.dimension), "m")
+    return "m"
 
 
 def trailing_fault(text: str, offset: int) -> SyntaxFault:

@@ -65,6 +65,13 @@ _NEAR_MISSES = (
     NearMiss(r"\bisCorrect\s*\Z", r"\((?=\s*<)", _CORRECT, ":"),
     NearMiss(r"", rf"(?!not\b|pred\b|holds\b){_NAME}\s*(?=\(\s*<)", _OWN_PREDICATE, "<"),
     NearMiss(rf"(?<![\w\-.<])(?!(?:Given|When|Then)\b){_NAME}\s*\Z", r"\((?=\s*<)", _OWN_PREDICATE, ":"),
+    NearMiss(
+        r"",
+        rf"(?P<quote>[\"']){_NAME}(?:\.{_NAME})?(?P=quote)",
+        "names must be in angle brackets, without quotes",
+        "<",
+        lambda quoted: f"<{quoted[1:-1]}>",
+    ),
     NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),
     NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
     NearMiss(r"", r";", "no line ends with ';': remove it", fix=lambda _: ""),

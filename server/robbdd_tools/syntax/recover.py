@@ -18,6 +18,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.joined import joined_clauses
 from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
+from robbdd_tools.syntax.unknown_phrases import unknown_phrase
 
 MAX_FAULTS = 12
 MAX_PARSES = 48
@@ -26,6 +27,8 @@ ALIKE = 0.6
 """Similarity ratio from which a word counts as a misspelt keyword."""
 HOLE = "\u02ad"
 """Placeholder for a missing name: a letter for the grammar, but one that no alphabet uses."""
+NOTHING = 'pred("")'
+"""A predicate that states nothing, and of which no rule expects anything."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
 _JOINING = re.compile(r"(?:\s|//[^\n]*\n)*(?:and|or)\b")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
@@ -37,13 +40,14 @@ class Repair:
     """A repaired text, which has the same length as the original. ``span`` is the part that was changed.
 
     ``text`` is the fix to offer for that part; ``None`` if the part was blanked. ``title`` describes the fix; empty if
-    its text does.
+    its text does. ``is_certain`` is true if no other repair is better, although it has no text.
     """
 
     repaired: str
     span: Span
     text: str | None
     title: str = ""
+    is_certain: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +111,7 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
         # needs
         # more evidence than a keyword: it may fit by chance.
         enough = next_word if repair.span.start == repair.span.end else own
-        if isinstance(found, Parsed) or (repair.text is not None and found.offset > enough):
+        if isinstance(found, Parsed) or ((repair.is_certain or repair.text is not None) and found.offset > enough):
             return _Step(repair, found, parses)
         if found.offset > max(furthest, repair.span.end - 1):
             furthest = found.offset
@@ -130,6 +134,7 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     found = _word(text, offset)
     literals = sorted(stopped.expected.literals)
     yield from _parentheses(language, text, stopped)
+    yield from _text_predicate(text, stopped)
     yield from _single_values(text, offset)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
     if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
@@ -142,6 +147,15 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
         yield from _rest_of_brackets(text, offset)
     yield from _lines(text, offset, ((1, 0), (0, 1), (1, 1), (2, 0)))
     yield from _blocks(text, offset)
+
+
+def _text_predicate(text: str, stopped: Rejected) -> Iterator[Repair]:
+    """Read a phrase that the catalog does not have as a text without content, so that the clause keeps its place."""
+    found = unknown_phrase(text, stopped)
+    if found is not None and found.may_be_text and found.whole.end - found.whole.start >= len(NOTHING):
+        blank = NOTHING.ljust(found.whole.end - found.whole.start)
+        repaired = text[: found.whole.start] + blank + text[found.whole.end :]
+        yield Repair(repaired, found.words, None, is_certain=True)
 
 
 def _single_values(text: str, offset: int) -> Iterator[Repair]:

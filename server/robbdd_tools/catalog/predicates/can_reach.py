@@ -19,6 +19,7 @@ CAN_REACH = Predicate(
     name="can-reach",
     phrase="<agent> can reach <object>",
     rdf_type="bdd:CanReach",
+    synonyms=("reachable", "reaches", "reach"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
         Slot("object", Kind.OBJECT, "bdd:ref-object"),

@@ -62,6 +62,7 @@ DOES_NOT_COLLIDE = Predicate(
     name="does-not-collide",
     phrase="<agent> does not collide <target>",
     rdf_type="bdd:DoesNotCollidePredicate",
+    synonyms=("collide", "collides", "collision", "hit", "hits", "bump", "bumps", "crash", "crashes"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
         Slot("target", Kind.ANY, "bdd:target"),

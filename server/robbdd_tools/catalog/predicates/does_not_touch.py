@@ -23,6 +23,7 @@ DOES_NOT_TOUCH = Predicate(
     name="does-not-touch",
     phrase="<one> does not touch <other>",
     rdf_type="rbw:DoesNotTouchPredicate",
+    synonyms=("avoids", "no contact", "without contact", "contact free"),
     slots=(Slot("one", Kind.ANY, "rbw:ref-one"), Slot("other", Kind.ANY, "rbw:ref-other")),
     sentence='"{one}" does not touch "{other}"',
     unit="N",

@@ -30,6 +30,7 @@ IS_AT_REST = Predicate(
     name="is-at-rest",
     phrase="<object> is at rest",
     rdf_type="rbw:IsAtRestPredicate",
+    synonyms=("still", "stationary", "stopped", "motionless", "stands still", "not moving"),
     slots=(Slot("object", Kind.OBJECT, "bdd:ref-object"),),
     sentence='"{object}" is at rest',
     unit="m/s",

@@ -24,6 +24,7 @@ IS_CLOSED = Predicate(
     name="is-closed",
     phrase="<object> is closed",
     rdf_type="rbw:IsClosedPredicate",
+    synonyms=("shut", "not open"),
     slots=(Slot("object", Kind.OBJECT, "bdd:ref-object"),),
     sentence='"{object}" is closed',
     unit="m",

@@ -25,6 +25,7 @@ IS_CORRECT_FOR = Predicate(
     name="is-correct-for",
     phrase="<workspace> is correct for <object>",
     rdf_type="rbw:IsCorrectForPredicate",
+    synonyms=("right for", "belongs to", "correct bin", "isCorrect"),
     slots=(
         Slot("workspace", Kind.WORKSPACE, "bdd:ref-workspace"),
         Slot("object", Kind.OBJECT, "bdd:ref-object"),

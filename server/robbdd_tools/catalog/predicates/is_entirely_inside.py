@@ -24,6 +24,7 @@ IS_ENTIRELY_INSIDE = Predicate(
     name="is-entirely-inside",
     phrase="<object> is entirely inside <workspace>",
     rdf_type="rbw:IsEntirelyInsidePredicate",
+    synonyms=("fully in", "completely in", "wholly in", "inside", "contained"),
     slots=(
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
         Slot("workspace", Kind.WORKSPACE, "bdd:ref-workspace"),

@@ -27,6 +27,7 @@ IS_FARTHER_THAN = Predicate(
     name="is-farther-than",
     phrase="<one> is farther than #distance from <other>",
     rdf_type="rbw:IsFartherThanPredicate",
+    synonyms=("far", "far from", "away", "at least"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),

@@ -27,6 +27,7 @@ IS_NEARER_THAN = Predicate(
     name="is-nearer-than",
     phrase="<one> is nearer than #distance to <other>",
     rdf_type="rbw:IsNearerThanPredicate",
+    synonyms=("near", "close", "closer", "close to", "next to", "at most"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),

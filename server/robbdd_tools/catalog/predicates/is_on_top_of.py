@@ -44,6 +44,7 @@ IS_ON_TOP_OF = Predicate(
     name="is-on-top-of",
     phrase="<one> is on top of <other>",
     rdf_type="rbw:IsOnTopOfPredicate",
+    synonyms=("on", "lies on", "stacked", "above", "rests on", "stands on"),
     slots=(Slot("one", Kind.OBJECT, "rbw:ref-one"), Slot("other", Kind.OBJECT, "rbw:ref-other")),
     sentence='"{one}" is on top of "{other}"',
     unit="m",

@@ -24,6 +24,7 @@ IS_OPEN = Predicate(
     name="is-open",
     phrase="<object> is open",
     rdf_type="rbw:IsOpenPredicate",
+    synonyms=("opened", "not closed"),
     slots=(Slot("object", Kind.OBJECT, "bdd:ref-object"),),
     sentence='"{object}" is open',
     unit="m",

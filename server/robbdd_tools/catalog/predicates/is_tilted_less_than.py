@@ -31,6 +31,7 @@ IS_TILTED_LESS_THAN = Predicate(
     name="is-tilted-less-than",
     phrase="<object> is tilted less than #limit",
     rdf_type="rbw:IsTiltedLessThanPredicate",
+    synonyms=("upright", "level", "tilt", "inclined", "vertical"),
     slots=(
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
         Slot("limit", Kind.QUANTITY, "rbw:limit", "angle"),

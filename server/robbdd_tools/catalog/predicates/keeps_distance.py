@@ -35,6 +35,7 @@ KEEPS_DISTANCE = Predicate(
     name="keeps-distance",
     phrase="<one> keeps a distance of #distance to <other>",
     rdf_type="rbw:KeepsDistancePredicate",
+    synonyms=("keeps", "clear of", "clearance", "stays away"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),

@@ -21,6 +21,7 @@ KEEPS_JOINTS_FROM_LIMITS = Predicate(
     name="keeps-joints-from-limits",
     phrase="<agent> keeps its joints #share from their limits",
     rdf_type="rbw:KeepsJointsFromLimitsPredicate",
+    synonyms=("joint limits", "joint", "joints"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
         Slot("share", Kind.QUANTITY, "rbw:share", "ratio"),

@@ -24,6 +24,7 @@ LOCATED_AT = Predicate(
     name="located-at",
     phrase="<object> is located at <workspace>",
     rdf_type="bdd:LocatedAtPredicate",
+    synonyms=("in", "into", "inside", "at", "placed", "put", "sits", "lies", "is at", "positioned"),
     slots=(
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
         Slot("workspace", Kind.WORKSPACE, "bdd:ref-workspace"),

@@ -29,6 +29,7 @@ MOVES_SLOWER_THAN = Predicate(
     name="moves-slower-than",
     phrase="<agent> moves slower than #limit",
     rdf_type="rbw:MovesSlowerThanPredicate",
+    synonyms=("speed", "velocity", "slow", "slowly", "fast", "faster"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
         Slot("limit", Kind.QUANTITY, "rbw:limit", "speed"),

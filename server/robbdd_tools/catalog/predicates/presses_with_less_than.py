@@ -21,6 +21,7 @@ PRESSES_WITH_LESS_THAN = Predicate(
     name="presses-with-less-than",
     phrase="<one> presses <other> with less than #limit",
     rdf_type="rbw:PressesWithLessThanPredicate",
+    synonyms=("force", "press", "push with", "pressure"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("other", Kind.ANY, "rbw:ref-other"),

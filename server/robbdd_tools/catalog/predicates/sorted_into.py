@@ -37,6 +37,7 @@ SORTED_INTO = Predicate(
     name="sorted-into",
     phrase="<objects> are sorted into <workspaces>",
     rdf_type="bdd:SortedIntoPredicate",
+    synonyms=("sort", "sorted"),
     slots=(
         Slot("objects", Kind.OBJECT_SET, "bdd:ref-object"),
         Slot("workspaces", Kind.WORKSPACE_SET, "bdd:ref-workspace"),

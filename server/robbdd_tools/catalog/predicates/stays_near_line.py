@@ -32,6 +32,7 @@ STAYS_NEAR_LINE = Predicate(
     name="stays-near-line",
     phrase="<one> stays within #distance of the line from <origin> to <destination>",
     rdf_type="rbw:StaysNearLinePredicate",
+    synonyms=("follows", "path", "straight line", "trajectory"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),

@@ -32,6 +32,7 @@ TAKES_LESS_THAN = Predicate(
     name="takes-less-than",
     phrase="it takes less than #limit",
     rdf_type="rbw:TakesLessThanPredicate",
+    synonyms=("lasts", "duration", "takes"),
     slots=(Slot("limit", Kind.QUANTITY, "rbw:limit", "time"),),
     sentence='it takes less than "{limit}"',
     unit="s",

@@ -20,6 +20,7 @@ TOUCHES = Predicate(
     name="touches",
     phrase="<one> touches <other>",
     rdf_type="rbw:TouchesPredicate",
+    synonyms=("contacts", "touch", "touching", "contact"),
     slots=(Slot("one", Kind.ANY, "rbw:ref-one"), Slot("other", Kind.ANY, "rbw:ref-other")),
     sentence='"{one}" touches "{other}"',
     unit="N",
