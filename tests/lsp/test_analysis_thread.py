@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
-from robbdd_tools.lsp.analysis_thread import AnalysisThread
+from robbdd_tools.lsp.analysis_thread import AnalysisThread, Urgency
 
 
 class Steps:
@@ -77,9 +77,29 @@ async def test_the_end_of_the_session_cancels_running_work() -> None:
         stopped.wait()
         checkpoint()
 
-    asked = asyncio.create_task(analysis.do(work, urgent=False))
+    asked = asyncio.create_task(analysis.do(work, Urgency.LATER))
     await asyncio.to_thread(began.wait)
     analysis.stop()
     stopped.set()
     with pytest.raises(asyncio.CancelledError):
         await asked
+
+
+async def test_idle_work_waits_for_later_work_and_is_interrupted_by_it() -> None:
+    thread, steps, order = AnalysisThread(), Steps(), list[str]()
+
+    def interrupted() -> None:
+        steps()
+        order.append("idle")
+
+    first = asyncio.create_task(thread.do(interrupted, Urgency.IDLE))
+    await asyncio.to_thread(steps.begun.wait)
+    others = [
+        asyncio.create_task(thread.do(lambda name=urgency.name: order.append(name), urgency))
+        for urgency in (Urgency.IDLE, Urgency.LATER, Urgency.URGENT)
+    ]
+    await asyncio.sleep(0)
+    steps.go_on.set()
+    await asyncio.gather(first, *others)
+    assert order == ["URGENT", "LATER", "idle", "IDLE"]
+    thread.stop()

@@ -1,4 +1,4 @@
-"""The only thread that uses the project. It does urgent work in the order of messages, and other work when idle."""
+"""The only thread that uses the project. It does urgent work in the order of messages, and other work after it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Any, TypeVar
 
 from robbdd_tools.base.checkpoint import Abandoned, watched
@@ -15,41 +16,53 @@ from robbdd_tools.base.checkpoint import Abandoned, watched
 Result = TypeVar("Result")
 
 
+class Urgency(IntEnum):
+    """How soon work is done; work of a smaller value interrupts that of a larger one."""
+
+    URGENT = 0
+    """Edits, and requests that somebody waits for."""
+    LATER = 1
+    """Results that are shown without a request, such as diagnostics."""
+    IDLE = 2
+    """Preparations for later requests."""
+
+
 @dataclass(eq=False)
 class _Job:
     work: Callable[[], Any]
-    urgent: bool
+    urgency: Urgency
     replacing: str | None
     done: Future[Any] = field(default_factory=Future[Any])
     abandoned: bool = False
 
 
 class AnalysisThread:
-    """Executes urgent work (edits and requests) in the order of arrival, and other work when there is no urgent work.
+    """Executes the most urgent work first, and work of the same urgency in the order of arrival.
 
-    At a checkpoint, other work is interrupted by urgent work, and work whose caller was cancelled ends. So a hover
+    At a checkpoint, work is interrupted by more urgent work, and work whose caller was cancelled ends. So a hover
     never waits for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the
     next item is an edit that replaces the same text.
     """
 
     def __init__(self) -> None:
-        self._urgent: deque[_Job] = deque()
-        self._later: deque[_Job] = deque()
+        self._waiting: dict[Urgency, deque[_Job]] = {urgency: deque() for urgency in Urgency}
         self._running: list[_Job] = []
         self._changed = threading.Condition()
         self._stopped = False
         threading.Thread(target=self._work, name="analysis", daemon=True).start()
 
-    async def do(self, work: Callable[[], Result], urgent: bool = True, replacing: str | None = None) -> Result:
+    async def do(
+        self, work: Callable[[], Result], urgency: Urgency = Urgency.URGENT, replacing: str | None = None
+    ) -> Result:
         """Execute ``work`` in the analysis thread and return its result.
 
         If the caller is cancelled, the work is skipped or ends at its next checkpoint. If newer work has the same key
         ``replacing``, it may be executed instead; then ``Abandoned`` is raised. If the thread is stopped in the
         meantime, the caller is cancelled.
         """
-        job = _Job(work, urgent, replacing)
+        job = _Job(work, urgency, replacing)
         with self._changed:
-            (self._urgent if urgent else self._later).append(job)
+            self._waiting[urgency].append(job)
             self._changed.notify()
         try:
             return await asyncio.wrap_future(job.done)
@@ -67,8 +80,8 @@ class AnalysisThread:
         """Start no further work."""
         with self._changed:
             self._stopped = True
-            self._urgent.clear()
-            self._later.clear()
+            for waiting in self._waiting.values():
+                waiting.clear()
             self._changed.notify()
 
     def _work(self) -> None:
@@ -78,8 +91,16 @@ class AnalysisThread:
 
     def _next(self) -> _Job | None:
         with self._changed:
-            self._changed.wait_for(lambda: self._urgent or self._later or self._stopped)
-            return None if self._stopped else (self._urgent or self._later).popleft()
+            self._changed.wait_for(lambda: self._stopped or any(self._waiting.values()))
+            return None if self._stopped else self._more_urgent_than(None)
+
+    def _more_urgent_than(self, running: Urgency | None) -> _Job | None:
+        for urgency, waiting in self._waiting.items():
+            if running is not None and urgency >= running:
+                return None
+            if waiting:
+                return waiting.popleft()
+        return None
 
     def _run(self, job: _Job) -> None:
         if not job.done.set_running_or_notify_cancel():
@@ -97,12 +118,13 @@ class AnalysisThread:
             del job
 
     def _look(self) -> None:
-        while not self._running[-1].urgent and self._urgent:
-            self._run(self._urgent.popleft())
+        while (job := self._more_urgent_than(self._running[-1].urgency)) is not None:
+            self._run(job)
         if self._stopped or self._is_over(self._running[-1]):
             raise Abandoned
 
     def _is_over(self, job: _Job) -> bool:
         # A request between two edits must see the first one.
-        replaced = job.replacing is not None and bool(self._urgent) and self._urgent[0].replacing == job.replacing
+        urgent = self._waiting[Urgency.URGENT]
+        replaced = job.replacing is not None and bool(urgent) and urgent[0].replacing == job.replacing
         return job.abandoned or replaced

@@ -14,6 +14,7 @@ from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.import_graph import ImportGraph
 from robbdd_tools.features.unimported import Elsewhere
 from robbdd_tools.features.workspace_files import model_files, model_files_near
+from robbdd_tools.lsp.analysis_thread import Urgency
 from robbdd_tools.lsp.convert import document_of
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Importers:
                 loaded.file(uri)
             return bool(fresh)
 
-        if found and await self._server.analyse(read, urgent=False):
+        if found and await self._server.analyse(read, Urgency.LATER):
             # Here, not in the search after an edit: a request may have loaded the file first.
             self._server.spawn(self._publish())
 
@@ -128,4 +129,4 @@ class Importers:
     async def _read_names_after(self, loaded: asyncio.Task[None]) -> None:
         await loaded
         files = await asyncio.to_thread(model_files, list(self._server.workspace.folders))
-        await self._server.analyse(lambda _: self.elsewhere.update(files), urgent=False)
+        await self._server.analyse(lambda _: self.elsewhere.update(files), Urgency.IDLE)

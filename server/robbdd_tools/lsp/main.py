@@ -8,11 +8,15 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools import __version__
 from robbdd_tools.lsp.stdio import StdioConnection
 from robbdd_tools.lsp.tcp import TcpConnection, accept_client
 from robbdd_tools.lsp.transport import RefusalFilter, end_soon
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
 
 LOOPBACK = "127.0.0.1"
 LARGEST_PORT = 65535
@@ -37,13 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         parser.error(f"the log cannot be written to {options.log_file}: {error.strerror or error}")
 
-    from robbdd_tools.base.memory import collect_rarely, freeze_garbage_collection
-
-    with freeze_garbage_collection():
-        from robbdd_tools.lsp.handlers import create_server
-
-        server = create_server()
-    collect_rarely()
+    server = load_server()
     if options.tcp is None:
         server.start_connection(StdioConnection())
     else:
@@ -58,6 +56,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     code = server.exit_code()
     end_soon(code)
     return code
+
+
+def load_server() -> RobbddServer:
+    """Import the server and everything that it needs, and return it."""
+    from robbdd_tools.base.deferred_methods import deferred_methods
+    from robbdd_tools.base.memory import collect_rarely, freeze_garbage_collection
+
+    with freeze_garbage_collection(), deferred_methods():
+        from robbdd_tools.lsp.handlers import create_server
+
+        server = create_server()
+    collect_rarely()
+    return server
 
 
 def address(text: str) -> tuple[str, int]:

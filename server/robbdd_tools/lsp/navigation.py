@@ -13,6 +13,7 @@ from robbdd_tools.features.outside_names import outside_references
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
 from robbdd_tools.features.workspace_symbols import workspace_symbols
+from robbdd_tools.lsp.analysis_thread import Urgency
 from robbdd_tools.lsp.convert import document_of, symbol_kind
 from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text
 from robbdd_tools.lsp.json_text import JsonText
@@ -113,7 +114,7 @@ def _register_structure(server: RobbddServer) -> None:
             ]
 
         # Reads unopened files: other requests go first.
-        return await ls.analyse(find, urgent=False)
+        return await ls.analyse(find, Urgency.LATER)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     async def folding(ls: RobbddServer, params: types.FoldingRangeParams) -> JsonText:

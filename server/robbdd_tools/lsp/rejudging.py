@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.interpreter import start_worker
 from robbdd_tools.base.limits import VALIDATION_SECONDS
+from robbdd_tools.lsp.analysis_thread import Urgency
 from robbdd_tools.lsp.framing import LENGTH, Edited, Execution, Rejudged, frame
 from robbdd_tools.lsp.work_done import WorkDone
 
@@ -108,7 +109,7 @@ class Rejudging:
             reached = {uri: None for one in edited for uri in (one, *snapshot.importers(one))}
             return [uri for uri in reached if uri in executions], self._server.project.texts()
 
-        models, texts = await self._server.analyse(affected, urgent=False)
+        models, texts = await self._server.analyse(affected, Urgency.LATER)
         found = [await asyncio.to_thread(self._order, revision, model, texts, executions[model]) for model in models]
         # Stores are looked up in threads: the request about a later edit may be ready first.
         orders = [order for order in found if revision > self._newest.get(order.uri, 0)]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.lsp.analysis_thread import Urgency
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 async def report_words(ls: RobbddServer) -> None:
     """Show a message for each such word, with its package and the reason."""
-    catalog = await asyncio.to_thread(load_catalog)
+    # Not in a thread of its own: both threads would read the catalog, since the first edit needs it, too.
+    catalog = await ls.analyse(lambda _: load_catalog(), Urgency.IDLE)
     for problem in catalog.problems:
         ls.warn(problem, types.MessageType.Warning)

@@ -22,7 +22,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.project_findings import ProjectFindings
 from robbdd_tools.features.result_diagnostics import result_diagnostics
 from robbdd_tools.features.run_verdicts import Findings, Results
-from robbdd_tools.lsp.analysis_thread import AnalysisThread
+from robbdd_tools.lsp.analysis_thread import AnalysisThread, Urgency
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
@@ -122,9 +122,9 @@ class RobbddServer(LanguageServer):
         if not isinstance(error, JsonRpcException):
             _LOG.error("internal error (%s)", source, exc_info=error)
 
-    async def analyse(self, work: Callable[[Snapshot], Result], urgent: bool = True) -> Result:
+    async def analyse(self, work: Callable[[Snapshot], Result], urgency: Urgency = Urgency.URGENT) -> Result:
         """Execute ``work`` on the latest snapshot in the analysis thread."""
-        return await self._analysis.do(lambda: work(self.project.snapshot()), urgent)
+        return await self._analysis.do(lambda: work(self.project.snapshot()), urgency)
 
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
         return await self._analysis.do(work)
@@ -212,7 +212,7 @@ class RobbddServer(LanguageServer):
     async def _publish_and_order(self, uri: str) -> None:
         if not self.pulls:
             await self._publish_one(uri)
-        request, texts = await self.analyse(lambda snapshot: self._order(snapshot, uri), urgent=False)
+        request, texts = await self.analyse(lambda snapshot: self._order(snapshot, uri), Urgency.LATER)
         self._shapes.request(uri, request.revision, texts)
         self.validator.request(request)
 
@@ -227,7 +227,7 @@ class RobbddServer(LanguageServer):
     async def survey_request(self, uri: str) -> Request:
         """Return the request to validate an unopened file."""
         importers = tuple(sorted((await self.importers.graph(uri)).importers(uri)))
-        texts = await self.analyse(lambda _: self.project.texts(), urgent=False)
+        texts = await self.analyse(lambda _: self.project.texts(), Urgency.LATER)
         shapes, sources = self.settings.shapes(uri), self.sources.texts()
         return Request(next(self._orders), uri, texts, shapes, surveyed=True, importers=importers, sources=sources)
 
@@ -327,7 +327,7 @@ class RobbddServer(LanguageServer):
             shown = [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
             return document.version, [*shown, *model_errors(snapshot, self.convert, uri, broken)]
 
-        return await self.analyse(find, urgent=False)
+        return await self.analyse(find, Urgency.LATER)
 
     def _shapes_found(self, answer: Answer) -> None:
         """Handle an answer of the validation process."""

@@ -19,6 +19,7 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.source_texts import use_unsaved
 from robbdd_tools.features.outside_files import NAMING, outside_uris
+from robbdd_tools.lsp.analysis_thread import Urgency
 from robbdd_tools.names.index import language_of
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class SourceDocuments:
         def find(snapshot: Snapshot) -> dict[str, frozenset[str]]:
             return {model: outside_uris(snapshot, model) for model in models}
 
-        self.learn(await self._server.analyse(find, urgent=False))
+        self.learn(await self._server.analyse(find, Urgency.LATER))
 
     def learn(self, named: Mapping[str, frozenset[str]]) -> None:
         """Take note of the files that models name, and subscribe to their texts."""

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 
 from robbdd_tools.run.database import explained, read_database
 
@@ -28,6 +27,8 @@ def usual_durations(database: Path, variants: Iterable[str]) -> Mapping[str, Dur
 
     Raises ``DatabaseProblem``.
     """
+    from statistics import median
+
     with explained(database):
         connection = read_database(database)
         if connection is None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Any
-from xml.sax.saxutils import escape
 
 from robbdd_tools.run.report import MINUS, margin
 
@@ -77,7 +77,7 @@ def _axes(frame: _Frame, part: Mapping[str, Any], bounds: tuple[float, float]) -
         # Leave out a number that would overlap that of the zero line.
         if abs(frame.y(value) - zero) > 11:
             words = margin(value, part["unit"]) or f"{value:+.0f}".replace("-", MINUS)
-            yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words)}</text>'
+            yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words, quote=False)}</text>'
     yield f'<text x="{LEFT}" y="{bottom + 13}">0 s</text>'
     yield f'<text x="{WIDTH - RIGHT}" y="{bottom + 13}" text-anchor="end">{frame.duration:.2f} s</text>'
 
@@ -92,7 +92,7 @@ def _events(frame: _Frame, events: Iterable[Mapping[str, Any]]) -> Iterator[str]
         level = next((level for level in range(LEVELS) if ends[level] < left), None)
         if level is not None:
             ends[level] = left + width + 4
-            yield f'<text x="{left:.1f}" y="{TOP - 5 - 13 * level}">{escape(name)}</text>'
+            yield f'<text x="{left:.1f}" y="{TOP - 5 - 13 * level}">{escape(name, quote=False)}</text>'
 
 
 def _curve(frame: _Frame, part: Mapping[str, Any]) -> str:

@@ -16,32 +16,33 @@ _TARGET = r"(?P<target>[^\W\d][\w\-]*(?:\.[^\W\d][\w\-]*)*)"
 _DAMAGED = r"(?:\(?[^(){}<>\n\"']*\)|\(\s*ns\s*=\s*[^\W\d][\w\-]*)\s*"
 _NAMED = rf"\s*(?:{_ARGUMENT}|{_DAMAGED})?{_NAME}"
 _HEADERS = (
-    (re.compile(r"(?:similar\s+)?obj\s+set" + _NAMED), SymbolKind.OBJECT_SET),
-    (re.compile(r"(?:similar\s+)?ws\s+set" + _NAMED), SymbolKind.WORKSPACE_SET),
-    (re.compile(r"(?:similar\s+)?agn\s+set" + _NAMED), SymbolKind.AGENT_SET),
-    (re.compile(r"comp\b" + _NAMED), SymbolKind.COMPOSITION),
-    (re.compile(r"scene\s+inst\b" + _NAMED), SymbolKind.SCENE_INSTANCE),
-    (re.compile(r"scene\b" + _NAMED), SymbolKind.SCENE),
-    (re.compile(r"Event\b" + _NAMED), SymbolKind.EVENT),
-    (re.compile(r"Task\b" + _NAMED), SymbolKind.TASK),
-    (re.compile(r"Requirement\b" + _NAMED), SymbolKind.REQUIREMENT),
-    (re.compile(r"Predicate\b" + _NAMED), SymbolKind.PREDICATE),
-    (re.compile(r"Behaviour\s+Tree\b" + _NAMED), SymbolKind.BEHAVIOUR_TREE),
-    (re.compile(r"const\s+set" + _NAMED), SymbolKind.CONSTANT_SET),
-    (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),
-    (re.compile(r"User\s+Story" + _NAMED), SymbolKind.STORY),
-    (re.compile(r"distrib\b" + _NAMED), SymbolKind.DISTRIBUTION),
-    (re.compile(rf"ktree(?:\s+inst\b)?{_NAMED}\s+of\b(?:\s*<\s*{_TARGET})?"), SymbolKind.TREE_INSTANCE),
-    (re.compile(rf"ktree\s+inst\b{_NAMED}\s*<\s*{_TARGET}"), SymbolKind.TREE_INSTANCE),
-    (re.compile(rf"ktree\s*(?:{_ARGUMENT}|{_DAMAGED}){_NAME}"), SymbolKind.TREE),
-    (re.compile(rf"ktree\s+{_NAME}(?P<ns>)"), SymbolKind.TREE_TEMPLATE),
-    (re.compile(r"bhv\s+impl\b" + _NAMED), SymbolKind.IMPLEMENTATION),
-    (re.compile(r"obs\s+provider\b" + _NAMED), SymbolKind.PROVIDER),
-    (re.compile(r"obs\s+policy\b" + _NAMED), SymbolKind.POLICY),
-    (re.compile(r"observation\b" + _NAMED), SymbolKind.OBSERVATION),
-    (re.compile(r"Scenario\s+Exec\b" + _NAMED), SymbolKind.EXECUTION),
-    (re.compile(rf"ns\s+{_NAME}(?P<ns>)"), SymbolKind.NAMESPACE),
+    (r"(?:similar\s+)?obj\s+set" + _NAMED, SymbolKind.OBJECT_SET),
+    (r"(?:similar\s+)?ws\s+set" + _NAMED, SymbolKind.WORKSPACE_SET),
+    (r"(?:similar\s+)?agn\s+set" + _NAMED, SymbolKind.AGENT_SET),
+    (r"comp\b" + _NAMED, SymbolKind.COMPOSITION),
+    (r"scene\s+inst\b" + _NAMED, SymbolKind.SCENE_INSTANCE),
+    (r"scene\b" + _NAMED, SymbolKind.SCENE),
+    (r"Event\b" + _NAMED, SymbolKind.EVENT),
+    (r"Task\b" + _NAMED, SymbolKind.TASK),
+    (r"Requirement\b" + _NAMED, SymbolKind.REQUIREMENT),
+    (r"Predicate\b" + _NAMED, SymbolKind.PREDICATE),
+    (r"Behaviour\s+Tree\b" + _NAMED, SymbolKind.BEHAVIOUR_TREE),
+    (r"const\s+set" + _NAMED, SymbolKind.CONSTANT_SET),
+    (r"Scenario\s+Template" + _NAMED, SymbolKind.TEMPLATE),
+    (r"User\s+Story" + _NAMED, SymbolKind.STORY),
+    (r"distrib\b" + _NAMED, SymbolKind.DISTRIBUTION),
+    (rf"ktree(?:\s+inst\b)?{_NAMED}\s+of\b(?:\s*<\s*{_TARGET})?", SymbolKind.TREE_INSTANCE),
+    (rf"ktree\s+inst\b{_NAMED}\s*<\s*{_TARGET}", SymbolKind.TREE_INSTANCE),
+    (rf"ktree\s*(?:{_ARGUMENT}|{_DAMAGED}){_NAME}", SymbolKind.TREE),
+    (rf"ktree\s+{_NAME}(?P<ns>)", SymbolKind.TREE_TEMPLATE),
+    (r"bhv\s+impl\b" + _NAMED, SymbolKind.IMPLEMENTATION),
+    (r"obs\s+provider\b" + _NAMED, SymbolKind.PROVIDER),
+    (r"obs\s+policy\b" + _NAMED, SymbolKind.POLICY),
+    (r"observation\b" + _NAMED, SymbolKind.OBSERVATION),
+    (r"Scenario\s+Exec\b" + _NAMED, SymbolKind.EXECUTION),
+    (rf"ns\s+{_NAME}(?P<ns>)", SymbolKind.NAMESPACE),
 )
+"""Patterns, which are compiled when a broken declaration is first read, and the kinds of what they declare."""
 _WITHOUT_IRI = {SymbolKind.NAMESPACE, SymbolKind.TREE_TEMPLATE}
 _SCENARIO = re.compile(rf"\w+\s+(?:Variant\s+)?{_NAME}\s*{{")
 _PART = re.compile(
@@ -81,7 +82,7 @@ _KINEMATIC_PARTS = {
 def salvage(text: str) -> tuple[Symbol, ...]:
     """Return the names that a broken declaration evidently declares, so that references to them are not reported."""
     for pattern, kind in _HEADERS:
-        match = pattern.match(text)
+        match = re.match(pattern, text)
         if match:
             whole = Span(0, len(text.rstrip()))
             namespace = None if kind in _WITHOUT_IRI else match["ns"] or FILE_NAMESPACE

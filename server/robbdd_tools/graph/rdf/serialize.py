@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "json-ld-expanded": "json-ld", "nt": "nt", "xml": "xml"}
 """Our name of a format → rdflib's name."""
-_SURROGATE = re.compile("[\ud800-\udfff]")
-_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_SURROGATE = "[\ud800-\udfff]"
+_NOT_XML = "[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 """Characters that XML 1.0 cannot represent."""
 
 
@@ -73,12 +73,15 @@ def serialize(graph: Graph, format: str) -> str:
     return text.strip("\n") + "\n"
 
 
-def _check_characters(graph: Graph, refused: re.Pattern[str], format: str) -> None:
+def _check_characters(graph: Graph, refused: str, format: str) -> None:
+    search = re.compile(refused).search
     for triple in graph:
         for term in triple:
-            found = refused.search(str(term))
+            found = search(str(term))
             if found is not None:
-                others = "ttl, nt and json-ld" if refused is _NOT_XML and not _SURROGATE.search(found[0]) else "json-ld"
+                others = (
+                    "ttl, nt and json-ld" if refused is _NOT_XML and not re.search(_SURROGATE, found[0]) else "json-ld"
+                )
                 text = printable(str(term)[:80])
                 raise UnwritableGraph(f"{format} cannot hold {printable(found[0])} of '{text}'; {others} can")
 
