@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lsprotocol import types
@@ -83,7 +84,7 @@ def shown(text: str) -> list[tuple[str, int, Any, str]]:
 
 @given(st.sampled_from(TEXTS), st.lists(EDITS, max_size=8), st.booleans())
 def test_lenses_over_any_edits_are_those_of_a_fresh_analysis(text: str, edits: Sequence[Edit], ran: bool) -> None:
-    project, convert, writer, history = opened(), Converter(), LensWriter(serialise, debugs=True), [text]
+    project, convert, writer, history = opened(), Converter(), LensWriter(serialise, debugs=True, counts=True), [text]
     project.open(URI, 0, text)
     findings = results(project.snapshot()) if ran else NOTHING
     for version, edit in enumerate([Edit(0, "replace", 0, 0, ""), *edits]):
@@ -92,7 +93,7 @@ def test_lenses_over_any_edits_are_those_of_a_fresh_analysis(text: str, edits: S
         fresh.open(URI, version, history[-1])
         kept = writer.text(convert, snapshot, URI, findings).text
         with without_cache():
-            other = LensWriter(serialise, debugs=True).text(convert, fresh.snapshot(), URI, findings).text
+            other = LensWriter(serialise, debugs=True, counts=True).text(convert, fresh.snapshot(), URI, findings).text
         assert json.loads(kept) == json.loads(other)
         assert shown(kept) == expected(fresh.snapshot(), findings)
         analysis = snapshot.file(URI)
@@ -102,7 +103,7 @@ def test_lenses_over_any_edits_are_those_of_a_fresh_analysis(text: str, edits: S
 
 
 def test_a_changed_scene_changes_the_numbers() -> None:
-    project, convert, writer = opened(), Converter(), LensWriter(serialise, debugs=True)
+    project, convert, writer = opened(), Converter(), LensWriter(serialise, debugs=True, counts=True)
     project.open(URI, 1, MODEL)
     before = shown(writer.text(convert, project.snapshot(), URI, NOTHING).text)
     project.open(f"{FOLDER}lab.scene", 2, SCENE.replace("object nut", "object nut, object pin"))
@@ -119,10 +120,18 @@ def test_an_edit_in_a_scenario_writes_no_other_lens() -> None:
         written.append(value.command.title if value.command is not None else "")
         return serialise(value)
 
-    project, convert, writer = opened(), Converter(), LensWriter(count, debugs=False)
+    project, convert, writer = opened(), Converter(), LensWriter(count, debugs=False, counts=False)
     text = long_story(100)
     for version, now in enumerate([text, f"\n{text}", text.replace("variation:", "variation: ", 1)]):
         written.clear()
         project.open(URI, version, now)
         writer.text(convert, project.snapshot(), URI, NOTHING)
         assert written.count("Run") == (text.count("template:"), 0, 1)[version]
+
+
+@pytest.mark.parametrize(("counts", "expected"), [(True, ["4 scenarios"]), (False, [])])
+def test_the_number_of_scenarios_is_shown_once(counts: bool, expected: list[str]) -> None:
+    project, writer = opened(), LensWriter(serialise, debugs=True, counts=counts)
+    project.open(URI, 1, MODEL)
+    text = writer.text(Converter(), project.snapshot(), URI, NOTHING).text
+    assert [title for lens in json.loads(text) if "scenario" in (title := lens["command"]["title"])] == expected

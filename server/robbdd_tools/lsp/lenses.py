@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
@@ -68,13 +69,14 @@ class _State:
 class LensWriter:
     """Writes the lenses of scenarios and executions as JSON text. The text of an unchanged declaration is kept.
 
-    ``debugs`` is true if the client can debug scenarios.
+    ``debugs`` is true if the client can debug scenarios, ``counts`` if it shows no inlay hints, so that the number of a
+    variant's scenarios is shown here.
     """
 
-    def __init__(self, serialise: Callable[[Any], str], *, debugs: bool) -> None:
+    def __init__(self, serialise: Callable[[Any], str], *, debugs: bool, counts: bool) -> None:
         self._serialise = serialise
         self._passages = Passages(serialise)
-        self._debugs = debugs
+        self._debugs, self._counts = debugs, counts
 
     def text(
         self, convert: Converter, snapshot: Snapshot, uri: str, findings: Findings, recorded: Set[str] = frozenset()
@@ -130,6 +132,10 @@ class LensWriter:
     def _lenses(self, one: _Runnable, place: types.Range, *, recorded: bool) -> Iterator[types.CodeLens]:
         for command in _commands(one, recorded=recorded, debugs=self._debugs):
             yield types.CodeLens(place, command)
+        # An execution has no hint.
+        if one.number is not None and (self._counts or one.variant is None):
+            title = f"{one.number:,} scenario{'' if one.number == 1 else 's'}"
+            yield types.CodeLens(place, types.Command(title=title, command=""))
         if one.rate is not None:
             # A lens without a command is plain text.
             yield types.CodeLens(place, types.Command(title=one.rate.label, command=""), data=appearance(one.rate))
@@ -139,7 +145,10 @@ def register_lenses(server: RobbddServer) -> None:
     """Add the code lenses to a server."""
     # pygls declares the base class of the protocol only.
     protocol: Any = server.protocol
-    writers = {debugs: LensWriter(protocol.serialised, debugs=debugs) for debugs in (False, True)}
+    kinds = product((False, True), repeat=2)
+    writers = {
+        (debugs, counts): LensWriter(protocol.serialised, debugs=debugs, counts=counts) for debugs, counts in kinds
+    }
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens] | JsonText:
@@ -147,10 +156,15 @@ def register_lenses(server: RobbddServer) -> None:
         if is_study(uri):
             return await ls.analyse(lambda snapshot: study_lenses(ls, snapshot, uri))
         recorded = await asyncio.to_thread(ls.stores.replayable, uri) if ls.shows_replays else frozenset[str]()
-        writer = writers[ls.debugs_scenarios]
+        writer = writers[ls.debugs_scenarios, not _shows_hints(ls)]
         return await ls.analyse(
             lambda snapshot: writer.text(ls.convert, snapshot, uri, ls.findings_of(snapshot, uri), recorded)
         )
+
+
+def _shows_hints(ls: RobbddServer) -> bool:
+    able = ls.client_capabilities.text_document
+    return able is not None and able.inlay_hint is not None
 
 
 def source_actions(snapshot: Snapshot, uri: str, span: Span, findings: Findings) -> Iterator[types.CodeAction]:
@@ -201,8 +215,6 @@ def _commands(one: _Runnable, *, recorded: bool, debugs: bool) -> Iterator[types
         yield types.Command(title="Replay", command=REPLAY, arguments=[target])
     if one.variant is not None:
         yield _gherkin(one.uri)
-    if one.number is not None:
-        yield types.Command(title=f"{one.number:,} scenario{'' if one.number == 1 else 's'}", command="")
 
 
 def _gherkin(uri: str) -> types.Command:
