@@ -81,13 +81,17 @@ async def test_a_change_in_one_file_makes_the_client_ask_again_about_others(edit
         await until_asked(asked, method)
 
 
-async def test_a_run_that_is_stored_makes_the_client_ask_for_lenses_alone(editor: Editor, asked: list[str]) -> None:
+@pytest.mark.parametrize("stored", ["runs/1/results.json", "studies/pickplace/x.study/study.sqlite"])
+async def test_a_run_or_study_that_is_stored_makes_the_client_ask_for_lenses_alone(
+    editor: Editor, asked: list[str], stored: str
+) -> None:
     editor.open()
     await editor.diagnostics()
     await until_asked(asked, types.WORKSPACE_CODE_LENS_REFRESH)
     asked.clear()
-    results = path_to_uri(editor.path.parent / ".robbdd" / "runs" / "1" / "results.json")
-    change = types.FileEvent(uri=results, type=types.FileChangeType.Created)
+    change = types.FileEvent(
+        uri=path_to_uri(editor.path.parent / ".robbdd" / stored), type=types.FileChangeType.Created
+    )
     editor.client.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(changes=[change]))
     await until_asked(asked, types.WORKSPACE_CODE_LENS_REFRESH)
     assert types.WORKSPACE_SEMANTIC_TOKENS_REFRESH not in asked

@@ -14,6 +14,7 @@ from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.source_documents import SUFFIXES, is_source
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RESULTS, RunStore
+from robbdd_tools.run.study_store import NAME as STUDY
 from robbdd_tools.syntax.parse import LANGUAGES
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ SOURCES = f"**/*{{{','.join(SUFFIXES)}}}"
 """Files that models may name. The errors of code from a run are outdated when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
 """Results file of a stored run, also of one from the command line."""
-
-
+STUDIES = f"**/{FOLDER.parent}/studies/**/{STUDY}"
+"""Results of a study, whose lenses depend on whether there are any."""
 STORES = f"**/{{{FOLDER.parent},{FOLDER.as_posix()},{FOLDER.parent}/{NAME}}}"
 """A store of runs, and the folders around it. Clients report a deleted folder without the files in it."""
 
@@ -41,9 +42,11 @@ def register_watching(server: RobbddServer) -> None:
         # No analysis depends on runs.
         every = [change.uri for change in params.changes]
         stores = {uri: store for uri in every if (store := _store_of(uri)) is not None}
-        changed = [uri for uri in every if uri not in stores and not is_source(uri)]
-        if stores:
+        studies = [uri for uri in every if uri.endswith(f"/{STUDY}")]
+        changed = [uri for uri in every if uri not in stores and uri not in studies and not is_source(uri)]
+        if stores or studies:
             ls.refreshes.want(LENSES)
+        if stores:
             ls.spawn(ls.stored_verdicts.refresh(stores.values()))
         if any(uri.endswith(".py") for uri in every):
             await ls.user_errors.code_changed()
@@ -83,6 +86,7 @@ async def watch_files(ls: RobbddServer) -> None:
         watchers=[
             *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, SOURCES, RUNS)),
             types.FileSystemWatcher(STORES, types.WatchKind.Delete),
+            types.FileSystemWatcher(STUDIES, types.WatchKind.Create | types.WatchKind.Delete),
         ]
     )
     entry = types.Registration(
