@@ -63,6 +63,28 @@ test("the reason is before a clause in a long line, after which it would be out 
   assert.deepEqual(shown(unknown), ["? unknown"]);
 });
 
+const WIDE = `    at-goal: holds(${"x".repeat(80)})`;
+
+for (const [place, lines, expected] of [
+  ["the line below", ["(", WIDE, "    and"], ["↑ ✗ 4 flipped", 2, 7, "after"]],
+  ["the line above, if the one below is long, too", ["Then:", WIDE, WIDE], ["↓ ✗ 4 flipped", 0, 5, "after"]],
+  ["the line above the last line", ["Then:", WIDE], ["↓ ✗ 4 flipped", 0, 5, "after"]],
+  ["its beginning, if both are long", [WIDE, WIDE, WIDE], ["✗ 4 flipped", 1, 4, "before"]],
+  ["its end, if that is in sight", ["(", WIDE.slice(5), "    and"], ["✗ 4 flipped", 1, 95, "after"]],
+] as const) {
+  test(`what is re-judged in a wide line is drawn at ${place}`, () => {
+    const column = lines[1].length;
+    const found = marksOfHints(text(lines), [hint(1, column, "✗ 4 flipped", { verdict: "violated", stale: false, rejudged: true })]);
+    assert.deepEqual(found.map(({ words, line, character, side }) => [words, line, character, side]), [expected]);
+  });
+}
+
+test("a verdict of an execution stays at its wide line", () => {
+  const hints = ["holds", "violated"].map((verdict) => hint(1, WIDE.length, "4", { verdict, stale: false }));
+  const found = marksOfHints(text(["", WIDE, ""]), hints);
+  assert.deepEqual(found.map(({ line, side }) => [line, side]), [[1, "after"], [1, "before"]]);
+});
+
 test("a pass rate is drawn at the end of the line below its lens", () => {
   const rate = { verdict: "violated", ...FRESH };
   const lenses = [lens("Run", undefined), lens("✗ 3/4 passed", rate)];
@@ -79,10 +101,10 @@ function lens(title: string, data: unknown): CodeLens {
   return { range: { start: { line: 0, character: 9 } }, command: { title, command: "" }, data } as unknown as CodeLens;
 }
 
-function text(): Pick<TextDocument, "lineAt"> {
+function text(lines: readonly string[] = LINES): Pick<TextDocument, "lineAt" | "lineCount"> {
   const lineAt = (line: number) => {
-    const found = LINES[line] ?? "";
+    const found = lines[line] ?? "";
     return { text: found, firstNonWhitespaceCharacterIndex: found.search(/\S/) };
   };
-  return { lineAt } as TextDocument;
+  return { lineAt, lineCount: lines.length } as TextDocument;
 }

@@ -19,7 +19,10 @@ export interface Mark extends Appearance {
 /** Columns of a line after which a window of usual size (1,360 px) cuts the reason short by an ellipsis. */
 const LONG_LINE = 60;
 
-type Text = Pick<vscode.TextDocument, "lineAt">;
+/** Columns of a line after which the first words of a verdict are out of sight in such a window. */
+const WIDE_LINE = 95;
+
+type Text = Pick<vscode.TextDocument, "lineAt" | "lineCount">;
 
 /** The appearance of a hint or a lens of the server; undefined if it has no verdict. */
 export function appearanceOf(shown: object): Appearance | undefined {
@@ -30,7 +33,7 @@ export function appearanceOf(shown: object): Appearance | undefined {
 /**
  * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause: after it, the editor draws
  * the failure of the test over everything else. A verdict that was re-judged is drawn after its clause, because
- * someone is typing there.
+ * someone is typing there; if it were out of sight there, it is drawn at a line next to it.
  */
 export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {
@@ -43,11 +46,25 @@ export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[])
     const tooltip = typeof hint.tooltip === "string" ? hint.tooltip : (hint.tooltip?.value ?? "");
     const mark = { ...appearance, words, line, tooltip };
     const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
+    if (appearance.rejudged && text.length > WIDE_LINE) {
+      return [nextToWideLine(document, mark) ?? { ...mark, character: first, side: "before" }];
+    }
     // The editor draws nothing at the row of a table, nor at a consequence, whose test has no message.
     return appearance.verdict === "holds" || appearance.rejudged || appearance.consequence || text[first] === "|"
       ? [{ ...mark, character, side: "after" }]
       : [{ ...mark, words: besideTest(mark, text), character: first, side: "before" }];
   });
+}
+
+/** A mark at the end of the line below or above its own, if that is short, with an arrow to its own. */
+function nextToWideLine(document: Text, mark: Omit<Mark, "character" | "side">): Mark | undefined {
+  const next = [
+    { line: mark.line + 1, arrow: "↑" },
+    { line: mark.line - 1, arrow: "↓" },
+  ];
+  const end = (line: number) => document.lineAt(line).text.length;
+  const host = next.find(({ line }) => line >= 0 && line < document.lineCount && end(line) <= LONG_LINE);
+  return host && { ...mark, words: `${host.arrow} ${mark.words}`, line: host.line, character: end(host.line), side: "after" };
 }
 
 /** The words before a clause: the editor draws the reason after it, which in a long line is out of sight. */
