@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -16,6 +17,7 @@ from time import perf_counter
 
 from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.log_evidence import LogEvidence, evidence_of
+from robbdd_tools.agent.log_following import growing_contents, is_decided
 from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
@@ -64,9 +66,11 @@ from robbdd_tools.world.log_views import observed_views, verdict_views
 def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator[RunMessage]:
     (spec,) = manifest.scenarios
     began = perf_counter()
-    contents = _contents(request, spec)
+    whole = _contents(request, spec) if request.quiet is None else None
     yield RunStarted(1, f"log {Path(request.path).name}")
     yield ScenarioStarted(0)
+    early: dict[int, ClauseJudged] = {}
+    contents = (yield from _follow(request, spec, early)) if whole is None else whole
     try:
         found = evidence_of(spec, contents, request)
     except SceneError as error:
@@ -85,7 +89,11 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
             faults.add(verdict.fault.id)
             yield UserCodeFailed(0, verdict.fault)
         verdicts.append(judged(0, clause.line, verdict))
-        yield verdicts[-1]
+        before = early.get(clause.line)
+        if verdicts[-1] != before:
+            yield verdicts[-1]
+        if before is not None and before.verdict != verdicts[-1].verdict:
+            yield LogLine("warning", f"{clause.sentence}: later messages changed the verdict '{before.verdict}'")
         if clause.role != "when":
             trace, regions = found.evidence.trace, found.evidence.regions
             ranges = margin_ranges(0, clause_of(clause, spec), clause, spec, trace, regions)
@@ -100,7 +108,11 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
 def _contents(request: LogRequest, spec: ScenarioSpec) -> LogContents:
     signals = tuple(map(read_event_signal, request.signals))
     check_events([one.event for one in signals], spec)
-    contents = read_log(Path(request.path), request.columns, request.clocks, signals)
+    return _completed(read_log(Path(request.path), request.columns, request.clocks, signals), request, spec)
+
+
+def _completed(contents: LogContents, request: LogRequest, spec: ScenarioSpec) -> LogContents:
+    """Return the contents of a log with the events that the user adds, in the period that the user chooses."""
     if request.annotations:
         texts = sorted((*contents.texts, *read_events(Path(request.annotations))), key=lambda stamp: stamp.time)
         contents = replace(contents, texts=tuple(texts))
@@ -108,6 +120,26 @@ def _contents(request: LogRequest, spec: ScenarioSpec) -> LogContents:
         check_one_execution(spec, contents.texts)
         return contents
     return cut(contents, request.begin or 0.0, request.end)
+
+
+def _follow(
+    request: LogRequest, spec: ScenarioSpec, early: dict[int, ClauseJudged]
+) -> Generator[RunMessage, None, LogContents]:
+    """Yield the verdicts that are decided while a log is recorded, and return its contents in the end.
+
+    ``early`` gets these verdicts by line.
+    """
+    check_events([read_event_signal(one).event for one in request.signals], spec)
+    contents = LogContents({})
+    for contents in growing_contents(request):
+        with suppress(RobbddError, SceneError):
+            # Until its first message, a topic that the user names is not there.
+            evidence = evidence_of(spec, _completed(contents, request, spec), request).evidence
+            for clause in spec.clauses:
+                if clause.line not in early and is_decided(clause, spec, evidence.trace):
+                    early[clause.line] = judged(0, clause.line, verdict_on(clause, evidence, spec))
+                    yield early[clause.line]
+    return _completed(contents, request, spec)
 
 
 def verdict_on(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec) -> Verdict:

@@ -45,12 +45,12 @@ def follow_run(run: Run, *, every_clause: bool = False) -> int:
     return _follow(run, Display(run.progress, brief=brief), watching)
 
 
-def follow(work: Followed, total: int | None = None, made: str = "simulated in") -> int:
-    """Show the progress of a replay or a judgement of ``total`` scenarios; ``made`` is as in ``Display``.
+def follow(work: Followed, total: int | None = None, made: str = "simulated in", *, live: bool = False) -> int:
+    """Show the progress of a replay or a judgement of ``total`` scenarios; ``made`` and ``live`` are as in ``Display``.
 
     Raises ``OSError``. Returns the number of the signal that ended it, or 0.
     """
-    return _follow(work, Display(work.progress, total, made), None)
+    return _follow(work, Display(work.progress, total, made, live=live), None)
 
 
 def _follow(work: Followed, showing: Display, watching: Callable[[Display], None] | None) -> int:

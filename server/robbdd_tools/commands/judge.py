@@ -72,7 +72,7 @@ def _judge_log(options: JudgeOptions) -> int:
     plan = Plan.of(load_all(options.paths), options.selection)
     keeping = Keeping(store=options.store, keep=options.keep)
     with LogJudgement(plan, Path(options.run), options.names, keeping) as judgement:
-        ended_by = follow(judgement, made="recorded, judged in")
+        ended_by = follow(judgement, made="recorded, judged in", live=options.names.quiet is not None)
         for remark in judgement.remarks:
             print_note(remark)
         if judgement.place.kept:

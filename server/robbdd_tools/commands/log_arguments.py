@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from robbdd_tools.commands.judge import JudgeOptions
 
+QUIET = 10.0
+"""Seconds without a new record after which a followed recording has ended."""
+
 
 def allow_log(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that only a log needs."""
@@ -36,6 +39,9 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     text = "begin of the period that is judged, in seconds since the begin of the log"
     log.add_argument("--from", dest="begin", metavar="SECONDS", type=_moment, help=text)
     log.add_argument("--until", dest="end", metavar="SECONDS", type=_moment, help="end of the period that is judged")
+    text = "the log is still recorded: judge each clause when its window has closed, until nothing was written for this"
+    text += f" time (default: {QUIET:g} s)"
+    log.add_argument("--follow", metavar="SECONDS", type=_positive, nargs="?", const=QUIET, help=text)
     log.add_argument("--world", metavar="FRAME", help="the frame of the world (default: the root of the frames)")
     text = "a table (CSV) of events that the log does not contain: time (s since the begin of the log), event"
     log.add_argument("--events", metavar="FILE.csv", type=Path, help=text)
@@ -73,6 +79,7 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
         tuple(options.event or ()),
         options.begin,
         options.end,
+        options.follow,
     )
     selection = Selection(options.scenario or (), options.where)
     paths = (options.path, *options.more)

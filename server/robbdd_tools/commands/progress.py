@@ -37,7 +37,15 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.run_folder import DEBUG_HOST
 from robbdd_tools.run.readable import readable
-from robbdd_tools.run.report import SIGNS, contact_words, deciding_words, margin, plain_sentence, values_words
+from robbdd_tools.run.report import (
+    SIGNS,
+    contact_words,
+    deciding_words,
+    margin,
+    plain_sentence,
+    values_words,
+    verdict_words,
+)
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -67,12 +75,20 @@ class Display:
     If the cursor of the terminal can be moved, a progress bar is shown and lines are wrapped between words. Any other
     output gets plain lines without wrapping, so that other programs can read them. ``made`` says how the time of the
     executions relates to the time that the work took. If ``brief`` is true, only failures and pass rates are printed.
+    If ``live`` is true, each verdict is also printed as soon as it is known.
     """
 
     def __init__(
-        self, results: RunResults, total: int | None = None, made: str = "simulated in", *, brief: bool = False
+        self,
+        results: RunResults,
+        total: int | None = None,
+        made: str = "simulated in",
+        *,
+        brief: bool = False,
+        live: bool = False,
     ) -> None:
         self._results = results
+        self._live = live
         self._brief = brief
         self._made = made
         self._total = len(results.scenarios) if total is None else total
@@ -129,6 +145,8 @@ class Display:
             case ScenarioFinished():
                 self._scenario(message.index)
                 self._tenth()
+            case ClauseJudged() if self._live:
+                self._verdict(message)
             case UserCodeFailed(_, fault):
                 self._fault(fault)
             case Output(None, text):
@@ -141,6 +159,12 @@ class Display:
                 self._console.print(plain(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
             case _:
                 pass
+
+    def _verdict(self, message: ClauseJudged) -> None:
+        """Print a verdict while others are still open."""
+        clauses = {clause.line: clause for clause in self._results.scenarios[message.index].spec.clauses}
+        sentence = plain_sentence(clauses[message.line].sentence)
+        self._console.print(plain(f"{verdict_words(message)}: {sentence}", STYLES[Outcome(message.verdict)]))
 
     def _fault(self, fault: Fault) -> None:
         """Print an error in users' code with its traceback.

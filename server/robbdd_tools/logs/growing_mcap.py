@@ -64,6 +64,11 @@ class GrowingMcap:
         """Whether the recorder has written the end of the file."""
         return self._records.complete
 
+    @property
+    def empty(self) -> bool:
+        """Whether no message was read so far."""
+        return not self._topics
+
     def read(self) -> bool:
         """Read what is new; return whether there was a message. Raises ``UnreadableLog``."""
         count = 0

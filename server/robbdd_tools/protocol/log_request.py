@@ -28,6 +28,7 @@ class LogRequest:
     - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
     - ``signals``: signals that report events, as ``protocol/event_signals`` reads them.
     - ``begin``, ``end``: the period that is judged, s since the begin of the log; ``None`` if the user states none.
+    - ``quiet``: the log is still recorded, until nothing was written for this time (s); ``None`` for a whole log.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 
@@ -47,3 +48,4 @@ class LogRequest:
     signals: tuple[str, ...] = ()
     begin: float | None = None
     end: float | None = None
+    quiet: float | None = None

@@ -58,6 +58,7 @@ class LogNames:
     signals: tuple[str, ...] = ()
     begin: float | None = None
     end: float | None = None
+    quiet: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +93,7 @@ def judge_log(
     signals: Sequence[str] = (),
     begin: float | None = None,
     end: float | None = None,
+    quiet: float | None = None,
     keeping: Keeping | None = None,
 ) -> JudgedLog:
     """Judge the log of a real robot by the scenario that it executed (docs/logs.md). The call blocks.
@@ -114,6 +116,7 @@ def judge_log(
     - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
     - ``signals``: messages that report events: ``("evt-pick-end=/gripper/closed becomes true",)``.
     - ``begin``, ``end``: the period of the log that is judged, s since its begin.
+    - ``quiet``: the log is still recorded; it ends when nothing was written for this time (s).
     - ``keeping``: where the result is stored; by default, in the store of the model's project.
 
     Raises ``UnreadableLog``, ``ValueError`` for an uncertainty that is not a quantity, ``NotOneScenario``,
@@ -136,6 +139,7 @@ def judge_log(
         tuple(signals),
         begin,
         end,
+        quiet,
     )
     with LogJudgement(plan, Path(log), names, keeping) as judgement:
         for _ in judgement.messages():
@@ -186,6 +190,7 @@ class LogJudgement:
             names.signals,
             names.begin,
             names.end,
+            names.quiet,
         )
         replace_file(self.place.folder / LOG_REQUEST, json.dumps(asdict(request)))
         self.progress = RunResults(self._recording.manifest)
