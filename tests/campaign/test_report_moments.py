@@ -93,6 +93,10 @@ def test_a_study_is_reported_and_its_worst_executions_are_executed_again(bench: 
     assert "2 of 4 executions hold" in page.text
     assert len(replays(text)["moments"]) == 1
     assert "the behaviour" in page.text
+    again = re.search(r"simulate it again: robbdd study replay two.study (\d+)", page.text)
+    assert again is not None
+    replayed = robbdd("study", "replay", "two.study", again[1], folder=bench)
+    assert "1 of 1 executions have the verdicts and margins of the study" in replayed.stdout
 
     # Which executions flipped between two levels of a factor, with both replays.
     sides = "two.study:tested=timed-pick-place", "two.study:tested=pick-place"
@@ -111,7 +115,7 @@ def test_a_study_is_reported_and_its_worst_executions_are_executed_again(bench: 
     (bench / "two.study").write_text(STUDY.replace("tested", "changed"), encoding="utf-8")
     refused = robbdd("report", "two.study", "--again", "1", "-o", "study.html", folder=bench)
     assert refused.returncode == 2
-    assert "the study or one of its models was changed since it was executed" in refused.stderr
+    assert "the study or one of its models was changed since it began" in refused.stderr
     # The results alone are still there, also by the folder that they are in.
     assert robbdd("report", "two.study", "-o", "study.html", folder=bench).returncode == 0
     stored = robbdd("report", ".robbdd/studies/two.study", "-o", "study.html", folder=bench)

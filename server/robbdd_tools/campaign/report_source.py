@@ -72,7 +72,11 @@ def study_report(name: str, store: StudyReader) -> ReportSource:
     shown = {"name": "study", "digest": "digest of the study", "version": "RobBDD", "simulator": "simulator"}
     environment = [(words, facts[fact]) for fact, words in shown.items() if facts.get(fact)]
     environment += [(fact, content) for fact, content in facts.items() if fact.startswith("files ")]
-    return ReportSource(name, results, state, tuple(environment), lambda _: "", lambda _: ({}, ()))
+
+    def command(result: ExecutionResult) -> str:
+        return shlex.join(["robbdd", "study", "replay", name, str(result.index + 1)])
+
+    return ReportSource(name, results, state, tuple(environment), command, lambda _: ({}, ()))
 
 
 def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> ReportSource:
@@ -89,9 +93,12 @@ def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> 
     def curves(result: ExecutionResult) -> tuple[Mapping[str, object], tuple[int, ...]]:
         return kept.get(result.index) or former(result)
 
-    results = list(source.results)
-    for study, index in again.indices.items():
-        results[study] = replace(results[study], clauses=_with_sentences(results[study], recorded.results[index]))
+    results = [
+        replace(one, clauses=_with_sentences(one, recorded.results[again.indices[one.index]]))
+        if one.index in again.indices
+        else one
+        for one in source.results
+    ]
     shown = {study: found[index] for study, index in again.indices.items() if index in found}
     return replace(source, results=tuple(results), curves=curves, moments={**source.moments, **shown})
 

@@ -32,7 +32,7 @@ class RunSource:
 
     - ``name``: where they are from. ``place``: the stored run, if it is one.
     - ``is_study``: whether they are of a study, which knows its clauses by their names.
-    - ``study``: its file, if that was named. ``executed``: all its executions, with all levels of factors.
+    - ``study``: its file, if that was named.
     - ``facts``: what a study used, by name: versions and digests.
     """
 
@@ -41,7 +41,6 @@ class RunSource:
     place: StoredRun | None = None
     is_study: bool = False
     study: Path | None = None
-    executed: tuple[ExecutionResult, ...] = ()
     facts: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
@@ -91,7 +90,7 @@ def _study(word: str, named: str, levels: Mapping[str, str], store: Path | None)
     total = int(facts.get("total", len(executed)))
     some = f", {len(executed)} of {total} executions" if len(executed) < total else ""
     name, file = f"{word} (study {facts.get('name', '')}{some})", Path(named) if Path(named).is_file() else None
-    return RunSource(name, results, is_study=True, study=file, executed=executed, facts=facts)
+    return RunSource(name, results, is_study=True, study=file, facts=facts)
 
 
 def _with_level(word: str, results: Iterable[ExecutionResult], factor: str, level: str) -> tuple[ExecutionResult, ...]:

@@ -1,29 +1,26 @@
-"""Execute single executions of a study again, with traces: the same values and seeds, and so the same verdicts."""
+"""Execute some results of a study again, with traces, for a page that shows them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.campaign.study_file import load_study
-from robbdd_tools.run.store import begin_in
+from robbdd_tools.campaign.study_replay import StudyReplay
 from robbdd_tools.workbench.model import ModelErrors
-from robbdd_tools.workbench.run import Run
 from robbdd_tools.workbench.stored import PastRun
 
 if TYPE_CHECKING:
-    from robbdd_tools.campaign.study_file import Cell, Study
-    from robbdd_tools.protocol.specs import ScenarioSpec
-    from robbdd_tools.run.prepare import RunRequest
+    from pathlib import Path
+
     from robbdd_tools.run.run_policy import Policy
-    from robbdd_tools.workbench.execution_rows import ExecutionResult
+    from robbdd_tools.run.study_reader import StudyReader
 
 
 class NotAgain(RobbddError):
-    """Executions of a study cannot be executed again, or gave other verdicts."""
+    """Executions of a study ended early, or gave other verdicts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,62 +31,30 @@ class Again:
     indices: Mapping[int, int]
 
 
-def execute_again(
-    path: Path, digest: str | None, chosen: Sequence[ExecutionResult], folder: Path, policy: Policy
-) -> list[Again]:
-    """Execute ``chosen`` results of the study at ``path`` again in run folders within ``folder``.
+def execute_again(path: Path, store: StudyReader, chosen: Collection[int], folder: Path, policy: Policy) -> list[Again]:
+    """Execute results of the study at ``path`` again, in run folders within ``folder``.
 
-    ``digest`` is the one that the study had when it was executed. Raises ``NotAgain`` if the study was changed, if an
-    execution is missing in it, or if a verdict differs; ``ModelErrors`` and ``OSError``.
+    ``store`` has its results, and ``chosen`` are the indices of those to execute.
+
+    Raises ``StudyProblem`` if the study or one of its files was changed, ``NotAgain`` if a verdict or margin differs,
+    ``ModelErrors``, ``UserCodeRefused`` and ``OSError``.
     """
     study = load_study(path)
-    if study.findings:
+    if any(finding.is_error for finding in study.findings):
         raise ModelErrors(study.findings)
-    if digest != study.digest:
-        raise NotAgain(f"{path}: the study or one of its models was changed since it was executed")
+    replay = StudyReplay(study, store, folder, force=False)
+    executions = [one for one in store.executions() if one.number - 1 in chosen]
     found: list[Again] = []
-    for number, cell in enumerate(study.cells):
-        inside = [one for one in chosen if cell.levels.items() <= one.values.items()]
-        if inside:
-            found.append(_in_cell(study, cell, inside, folder / str(number), policy))
+    for begun, own in replay.runs(executions, policy):
+        with begun as run:
+            for _ in run.messages():
+                pass
+        if run.problem or run.ending:
+            raise NotAgain(run.problem or run.ending)
+        for number, words in replay.differences(run, own).items():
+            raise NotAgain(f"execution {number} differs from the study: {words}")
+        known = {one.key: one.number - 1 for one in own}
+        past = PastRun(run.place)
+        keys = [(one.variant, one.variation, one.execution, one.repetition) for one in past.results]
+        found.append(Again(past, {known[key]: index for index, key in enumerate(keys)}))
     return found
-
-
-def _in_cell(study: Study, cell: Cell, chosen: Sequence[ExecutionResult], folder: Path, policy: Policy) -> Again:
-    wanted = {(one.variant, one.variation, one.execution, one.repetition) for one in chosen}
-    plan = replace(cell.plan, requests=tuple(_limited(request, wanted) for request in cell.plan.requests))
-    with Run.begin(plan, begin_in(folder), replace(policy, timeout=study.timeout), repeat=study.repeat) as run:
-        for _ in run.messages():
-            pass
-        ending = run.problem or run.ending
-    if ending:
-        raise NotAgain(ending)
-    again = PastRun(run.place)
-    known = {
-        (spec.variant, spec.variation, _name(spec), spec.repetition): index
-        for index, spec in enumerate(run.place.manifest().scenarios)
-    }
-    indices: dict[int, int] = {}
-    for one in chosen:
-        index = known.get((one.variant, one.variation, one.execution, one.repetition))
-        if index is None:
-            raise NotAgain(f"the study has no execution {one.name}, repetition {one.repetition}")
-        result = again.results[index]
-        if (result.seed, result.verdict) != (one.seed, one.verdict):
-            raise NotAgain(f"{one.name} (seed {one.seed}) was {one.verdict}, and is {result.verdict} now: find out why")
-        indices[one.index] = index
-    return Again(again, indices)
-
-
-def _limited(request: RunRequest, wanted: set[tuple[str, int, str, int]]) -> RunRequest:
-    former = request.is_wanted
-
-    def is_wanted(spec: ScenarioSpec) -> bool:
-        key = (spec.variant, spec.variation, _name(spec), spec.repetition)
-        return key in wanted and (former is None or former(spec))
-
-    return replace(request, is_wanted=is_wanted)
-
-
-def _name(spec: ScenarioSpec) -> str:
-    return "" if spec.execution is None else spec.execution.name

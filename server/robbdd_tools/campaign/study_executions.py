@@ -15,17 +15,18 @@ _LEVEL = "level."
 def study_executions(rows: Iterable[Mapping[str, Any]]) -> tuple[ExecutionResult, ...]:
     """Return the executions in the ``rows`` of a study's store, in their order.
 
-    A study stores names of clauses alone, so these take the place of IRIs. Its factors are among the values.
+    The ``index`` of each is its number in the study minus 1. A study stores names of clauses alone, so these take the
+    place of IRIs. Its factors are among the values.
     """
     return tuple(_executions(rows))
 
 
 def _executions(rows: Iterable[Mapping[str, Any]]) -> Iterator[ExecutionResult]:
-    for index, (_, group) in enumerate(groupby(rows, key=_key)):
+    for number, group in groupby(rows, key=lambda row: int(row["number"])):
         clauses = list(group)
         first = clauses[0]
         yield ExecutionResult(
-            index,
+            number - 1,
             first["scenario"],
             "",
             first["variant"],
@@ -39,12 +40,6 @@ def _executions(rows: Iterable[Mapping[str, Any]]) -> Iterator[ExecutionResult]:
             first["duration"],
             tuple(map(_clause, clauses)),
         )
-
-
-def _key(row: Mapping[str, Any]) -> tuple[object, ...]:
-    names = ("variant", "variation", "execution", "repetition", "seed")
-    levels = sorted((name, str(value)) for name, value in row.items() if name.startswith(_LEVEL))
-    return (*levels, *(row[name] for name in names))
 
 
 def _clause(row: Mapping[str, Any]) -> ClauseResult:

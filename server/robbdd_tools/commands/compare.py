@@ -28,6 +28,7 @@ from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.run_comparison import ComparisonOptions, Decision, compare_results
 from robbdd_tools.campaign.run_sources import run_source
 from robbdd_tools.campaign.study_again import execute_again
+from robbdd_tools.campaign.study_source import stored_study
 from robbdd_tools.commands import CANNOT_TELL, FINDINGS, OK
 from robbdd_tools.commands.output import print_line
 from robbdd_tools.commands.run import Outputs, report_problems
@@ -147,8 +148,8 @@ def _recordings(
         return [TracedRun(source.place, results, {one.index: one.index for one in results})]
     if source.study is None or not options.again:
         return []
-    chosen = [source.executed[index] for index in indices[: options.again]]
-    found = execute_again(source.study, source.facts.get("digest"), chosen, folder, options.policy)
+    with stored_study(str(source.study), options.store) as store:
+        found = execute_again(source.study, store, indices[: options.again], folder, options.policy)
     return [TracedRun(one.run.place, one.run.results, one.indices) for one in found]
 
 

@@ -70,12 +70,12 @@ def _run(options: ReportOptions, moments: Moments) -> ReportSource:
 
 
 def _study(options: ReportOptions, moments: Moments) -> ReportSource:
-    with stored_study(options.word, options.store) as store:
-        source, digest = study_report(Path(options.word).name, store), store.fact("digest")
-    if not options.again:
-        return source
-    chosen = worst(source.results)[: options.again]
-    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
-        for again in execute_again(Path(options.word), digest, chosen, Path(folder), options.policy):
+    with (
+        stored_study(options.word, options.store) as store,
+        tempfile.TemporaryDirectory(prefix="robbdd-") as folder,
+    ):
+        source = study_report(Path(options.word).name, store)
+        chosen = [one.index for one in worst(source.results)[: options.again]]
+        for again in execute_again(Path(options.word), store, chosen, Path(folder), options.policy) if chosen else ():
             source = with_traces(source, again, moments if options.pictures else None)
     return source
