@@ -71,6 +71,7 @@ COMMANDS = (
     "study outcomes one.study --store studies",
     "study margins one.study --clause at-goal --by thing --store studies",
     "study replay one.study 1 --store studies",
+    "study clean one.study --store studies",
     "study plan --width 0.05",
     "falsify ranged.study --budget 1 --method uniform",
     "mutate pickplace.bdd --first 1 --fault no-grip",

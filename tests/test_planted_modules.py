@@ -45,6 +45,7 @@ COMMANDS = (
     "study outcomes one.study --plot out/outcomes.svg --store out/studies",
     "study margins one.study --clause at-goal --by thing --store out/studies",
     "study replay one.study 1 --store out/studies",
+    "study clean one.study --store out/studies",
     "study plan --width 0.05",
     "falsify ranged.study --budget 1 --method uniform",
     "mutate pickplace.bdd --first 1 --fault no-grip --json out/faults.json",

@@ -269,7 +269,7 @@ const study = grammar("RobBDD Study", "source.robbdd.study", [
     },
   },
   {
-    // The levels are names of catalog behaviours.
+    // The levels are names of catalog behaviours and, in brackets, of implementations.
     begin: String.raw`(?<![\p{L}\p{N}_-])(factor)\s+(bhv)\s*(<[^<>]*>)\s*(:)\s*\{`,
     beginCaptures: {
       1: { name: `${WORD}.factor.robbdd` },
@@ -282,8 +282,9 @@ const study = grammar("RobBDD Study", "source.robbdd.study", [
   },
   COMMON,
   declaration(DECLARE, "entity.name.type.study", "Study"),
-  labels(PROPERTY, "scenarios", "where", "first", "sample", "pairwise", "repeat", "seed", "batch", "timeout", "stop", "design"),
+  labels(PROPERTY, "scenarios", "where", "first", "sample", "pairwise", "repeat", "seed", "batch", "timeout", "stop", "traces", "design"),
   phrases(`${WORD}.stop`, "width", "rate", "against"),
+  phrases(`${WORD}.traces`, "failures", "all", "MB"),
   phrases(`${WORD}.design`, "latin-hypercube", "sobol", "grid"),
   phrases(`${WORD}.factor`, "factor scene", "factor bhv", "factor var", "factor", "scene", "bhv", "var", "from", "to"),
   phrases(DECLARE, "Study"),

@@ -9,7 +9,7 @@ import pytest
 from campaign.study_agents import write_study
 from kit import EXAMPLES
 from robbdd_tools.campaign.study_batches import batches
-from robbdd_tools.campaign.study_file import load_study
+from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.cli import main
 from robbdd_tools.workbench.named_files import NotAModel
 
@@ -67,6 +67,37 @@ def test_levels_of_factors_are_combined_and_executed_with_the_same_seeds(tmp_pat
     assert [cell.words for cell in study.cells] == [f"{name}=pick-place"]
     assert [spec.seed for spec in study.cells[0].plan.specs()] == [spec.seed for spec in plain.cells[0].plan.specs()]
     assert study.digest != plain.digest
+
+
+def test_implementations_of_the_model_are_levels(tmp_path: Path) -> None:
+    for path in (EXAMPLES / "ownrobot").iterdir():
+        if path.is_file():
+            (tmp_path / path.name).write_bytes(path.read_bytes())
+    model = tmp_path / "tidy.bddx"
+    second = "\nbhv impl (ns=exec) second { py { module: second_version, attr: Carry } }\n"
+    model.write_text(model.read_text(encoding="utf-8") + second, encoding="utf-8")
+    (tmp_path / "second_version.py").write_bytes((tmp_path / "carrying.py").read_bytes())
+
+    def study(levels: str) -> Study:
+        text = f'import "tidy.bddx"\nStudy s {{\nscenarios: {{ <by-our-code> }} factor bhv <ours>: {{ {levels} }} }}'
+        (tmp_path / "p.study").write_text(text, encoding="utf-8")
+        return load_study(tmp_path / "p.study")
+
+    found = study("<ours>, <second>, <exec:built-in>, pick-place")
+    assert found.findings == ()
+    assert [cell.words for cell in found.cells] == [
+        "ours=<ours>", "ours=<second>", "ours=<exec:built-in>", "ours=pick-place"
+    ]  # fmt: skip
+    executed = [[one.execution for one in cell.plan.specs()] for cell in found.cells]
+    names = [{(one.implementation.kind, one.implementation.name) for one in cell if one} for cell in executed]
+    own = [{("python", "carrying:Carry")}, {("python", "second_version:Carry")}]
+    assert names == [*own, *[{("catalog", "pick-place")}] * 2]
+    assert len({tuple(one.seed for one in cell.plan.specs()) for cell in found.cells}) == 1
+    (unknown,) = study("<ours>, <third>").findings
+    wanted = "there is no behaviour implementation 'third'; the model has <built-in>, <ours>, <second>"
+    assert (unknown.place.column, unknown.message) == (59, wanted)
+    (twice,) = study("<ours>, <ours>").findings
+    assert twice.message == "the level '<ours>' is given twice: remove one of them"
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,11 @@ def test_other_verdicts_are_reported(
     known = executions(study)
     failed = next(number for number, row in sorted(known.items()) if row["scenario_verdict"] == "violated")
     held = next(number for number, row in sorted(known.items()) if row["scenario_verdict"] == "holds")
-    monkeypatch.setattr(study_agents, "margin", lambda _: 0.25)
+
+    def other(_: ScenarioSpec) -> float:
+        return 0.25
+
+    monkeypatch.setattr(study_agents, "margin", other)
     assert main(["study", "replay", str(study), str(failed), str(held)]) == 1
     printed = capsys.readouterr().out
     assert f"execution {failed} differs from the study: on-bench was violated, and is holds" in printed

@@ -182,7 +182,7 @@ def test_changed_steps_and_another_simulator_are_not_mixed_with_earlier_results(
 ) -> None:
     with monkeypatch.context() as patched:
         stop_after(patched, 9)
-        main(["study", "run", str(study)])
+        main(["study", "run", str(study), "--jobs", "1"])
     (batch,) = (study_folder(study) / "batches").iterdir()
     steps = Path("steps/m_steps.py")
     steps.parent.mkdir()
@@ -202,7 +202,7 @@ def test_a_damaged_open_batch_is_executed_again(study: Path, monkeypatch: pytest
     expected = exported(study)
     with monkeypatch.context() as patched:
         stop_after(patched, 20)
-        main(["study", "run", str(study), "--restart"])
+        main(["study", "run", str(study), "--restart", "--jobs", "1"])
     (batch,) = (study_folder(study) / "batches").iterdir()
     (batch / "run.json").unlink()
     assert main(["study", "resume", str(study)]) == 1

@@ -138,6 +138,13 @@ def test_implementations_and_executions_of_a_model_are_proposed() -> None:
         return [one.label for one in complete(opened.snapshot(), uri, text.index("$0"))]
 
     assert name in at(f'import "{stored.name}" Study s {{ factor bhv $0')
+    assert {name, "pick-place"} <= {*at(f'import "{stored.name}" Study s {{ factor bhv <x>: {{ $0')}
+    assert name not in at(f'import "{stored.name}" Study s {{ factor bhv <x>: {{ <{name}>, $0')
+    text = f'import "{stored.name}" Study s {{ factor bhv <x>: {{ pick-place, <{name}> }} }}'
+    opened.open(uri, 2, text)
+    named = study_name_at(opened.snapshot(), uri, text.index(name) + 1)
+    assert named is not None
+    assert named[1].symbol.name == name
     assert len(at(f'import "{stored.name}" Study s {{ scenarios: {{ $0')) >= 2
 
 

@@ -8,13 +8,16 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.campaign.study_place import StudyProblem
 from robbdd_tools.campaign.study_progress import StudyProgress, Tally, WorkerState
 from robbdd_tools.campaign.study_run import StudyRun
 from robbdd_tools.protocol.messages import decode
+from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.parcels import Parcel, pack_prepared, pack_used
 from robbdd_tools.run.recording import OtherSimulator
 from robbdd_tools.run.tasks import grouped
+from robbdd_tools.syntax.study_content import ALL, FAILURES
 from robbdd_tools.workbench.deciding_versions import versions
 from robbdd_tools.workbench.parts import Part, PartResult
 
@@ -157,7 +160,9 @@ class ClusterStudyRun(StudyRun):
             indices = current.send(self._pace.size(self._unsent, self._cluster.threads))
             self._unsent -= len(indices)
             origin = str(current.run.folder.absolute())
-            part = Part(current.batch.number, indices, origin, versions(), self._policy.timeout)
+            wanted = self._study.content.traces
+            traces = "" if wanted is None else FAILURES if wanted.failures else ALL
+            part = Part(current.batch.number, indices, origin, versions(), self._policy.timeout, traces)
             self._cluster.send(part, current.used, current.prepared)
 
     def _next_batch(self) -> _OpenBatch | None:
@@ -199,6 +204,10 @@ class ClusterStudyRun(StudyRun):
         opened = next(one for one in self._opened if one.batch.number == part.batch)
         assert opened.run is not None
         opened.expected -= 1
+        for index, content in result.traces.items():
+            trace = trace_file(opened.run.folder, index)
+            trace.parent.mkdir(exist_ok=True)
+            replace_file(trace, content)
         try:
             opened.run.receive(map(decode, result.lines), result.host)
         except OtherSimulator as error:

@@ -260,7 +260,7 @@ class StudyLoader:
     def _selected(self, selection: Selection, cell: Sequence[tuple[Factor, Word]]) -> Selection:
         scenes = [self._folder / level.text for factor, level in cell if factor.implementation is None]
         substitutions = {
-            factor.implementation.text: level.text for factor, level in cell if factor.implementation is not None
+            factor.implementation.text: level.words for factor, level in cell if factor.implementation is not None
         }
         return replace(selection, substitutions=substitutions, instances=self._models.instances(scenes))
 
@@ -291,5 +291,5 @@ def _found(document: Document, fault: Diagnostic) -> Finding:
 
 def _levels(cell: Sequence[tuple[Factor, Word]]) -> Mapping[str, str]:
     return {
-        "scene" if factor.implementation is None else factor.implementation.text: level.text for factor, level in cell
+        "scene" if factor.implementation is None else factor.implementation.text: level.words for factor, level in cell
     }

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.locks import is_held
 from robbdd_tools.campaign.study_progress import Tally
+from robbdd_tools.campaign.study_traces import TRACES
 from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.store import LOCK, NoSuchRun, project_root, run_in, shown_path
 from robbdd_tools.run.study_reader import read_study_store
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from robbdd_tools.run.study_reader import StudyReader
 
 FOLDER = Path(".robbdd") / "studies"
+RUNS = "runs"
+"""Folder of the runs that executed executions of a study again."""
 BATCHES = "batches"
 """Folder of the batch that is executed."""
 
@@ -47,7 +50,8 @@ def remove_results(folder: Path) -> None:
         raise StudyProblem("another process executes this study: wait for it, or end it first")
     for end in ("", "-wal", "-shm"):
         (folder / f"{NAME}{end}").unlink(missing_ok=True)
-    shutil.rmtree(folder / BATCHES, ignore_errors=True)
+    for name in (BATCHES, RUNS, TRACES):
+        shutil.rmtree(folder / name, ignore_errors=True)
 
 
 def open_results(folder: Path) -> StudyReader:

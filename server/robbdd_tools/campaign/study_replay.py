@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
-from robbdd_tools.campaign.study_place import StudyProblem
+from robbdd_tools.campaign.study_place import RUNS, StudyProblem
 from robbdd_tools.run.results import unjudged
 from robbdd_tools.run.store import RunStore
+from robbdd_tools.run.store_maintenance import remove_runs
 from robbdd_tools.workbench.run import Run
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.study_file import Cell, Study
     from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.run.prepare import RunRequest
     from robbdd_tools.run.results import ScenarioResult
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.study_reader import StoredExecution, StudyReader
-
-RUNS = "runs"
-"""Folder of the runs that executed executions of a study again."""
 
 
 class NothingChosen(RobbddError):
@@ -99,20 +98,22 @@ class StudyReplay:
     def _begun(self, cell: Cell, executions: Sequence[StoredExecution], policy: Policy) -> Run:
         keys = {one.key for one in executions}
 
-        def wanted(spec: ScenarioSpec) -> bool:
-            return _key(spec) in keys
+        def limited(request: RunRequest) -> RunRequest:
+            former = request.is_wanted
 
-        requests = tuple(
-            replace(one, is_wanted=lambda spec, former=one.is_wanted: wanted(spec) and (not former or former(spec)))
-            for one in cell.plan.requests
-        )
-        plan = replace(cell.plan, requests=requests)
+            def wanted(spec: ScenarioSpec) -> bool:
+                return _key(spec) in keys and (former is None or former(spec))
+
+            return replace(request, is_wanted=wanted)
+
+        plan = replace(cell.plan, requests=tuple(map(limited, cell.plan.requests)))
         run = Run.begin(plan, self._runs.begin(), policy, repeat=self._study.repeat)
         known = self._store.fact(f"files {cell.words}")
         reason = "" if self._force or known is None else changed_files(json.loads(known), used_files(run.place))
         if reason:
             run.close()
             run.place.discard()
+            remove_runs(run.place.database, (run.place.number,))
             raise StudyProblem(f"{reason}, or execute the changed files with --force")
         return run
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from time import monotonic
 from typing import TYPE_CHECKING, Self
@@ -15,7 +16,9 @@ from robbdd_tools.campaign.study_batches import Batch, batches
 from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
 from robbdd_tools.campaign.study_place import BATCHES, StudyProblem
 from robbdd_tools.campaign.study_progress import StudyProgress, Tally, WorkerState
+from robbdd_tools.campaign.study_traces import MEGABYTE, keep_traces, traces_in, trim_traces
 from robbdd_tools.protocol.messages import ScenarioFinished
+from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.report import values_words
 from robbdd_tools.run.store import LOCK, NoSuchRun, begin_in, run_in
 from robbdd_tools.run.stored_results import FINISHED
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.campaign.stopping import Ruling
     from robbdd_tools.campaign.study_file import Study
+    from robbdd_tools.run.results import RunResults
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import StoredRun
 
@@ -131,10 +135,14 @@ class StudyRun:
                 return
 
     def _removed_batches(self) -> frozenset[int]:
-        """Return the numbers of the stored batches, and remove what is left of their folders."""
+        """Return the numbers of the stored batches, and remove what is left of their folders, but keep traces."""
         done = self.store.batches()
-        for number in done:
-            shutil.rmtree(self._place(number).folder, ignore_errors=True)
+        for place in filter(lambda one: one.folder.exists(), map(self._place, sorted(done))):
+            with suppress(NoSuchRun, DatabaseProblem):
+                results = place.read_results()
+                if results is not None:
+                    self._keep_traces(int(place.folder.name), results)
+            shutil.rmtree(place.folder, ignore_errors=True)
         return done
 
     def _begins_stage(self, batch: Batch) -> bool:
@@ -190,7 +198,14 @@ class StudyRun:
             raise StudyProblem(f"batch {batch.number} has executions without a result")
         self._check_simulator(place)
         self.store.add(batch.number, batch.cell.words, batch.cell.levels, results)
+        self._keep_traces(batch.number, results)
         shutil.rmtree(place.folder, ignore_errors=True)
+
+    def _keep_traces(self, batch: int, results: RunResults) -> None:
+        wanted = self._study.content.traces
+        if wanted is not None:
+            keep_traces(self._folder, self._place(batch).folder, results.scenarios, self.store.numbers(batch), wanted)
+            trim_traces(self._folder, self.store.failing(traces_in(self._folder)), wanted.limit * MEGABYTE)
 
     def _is_finished(self, place: StoredRun) -> bool:
         """Return whether a batch was executed, but its results were not stored."""
@@ -208,10 +223,11 @@ class StudyRun:
             if known:
                 return resume(place, lambda _: self._policy)
         shutil.rmtree(place.folder, ignore_errors=True)
-        return Run.begin(batch.plan(), begin_in(place.folder, kept=False), self._policy, repeat=self._study.repeat)
+        begun, traces = begin_in(place.folder, kept=False), self._study.content.traces is not None
+        return Run.begin(batch.plan(), begun, self._policy, repeat=self._study.repeat, traces=traces)
 
     def _place(self, number: int) -> StoredRun:
-        # A batch is moved to the study's store, so it is neither kept nor does it have traces.
+        # A batch is moved to the study's store, so it is not kept.
         return run_in(self._folder / BATCHES / str(number), kept=False)
 
     def _stored(self) -> tuple[int, int]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.processes import CTRL_C, end_requests
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
+from robbdd_tools.campaign.study_cleaning import clean, kept_sizes
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_place import (
     StudyProblem,
@@ -24,6 +25,7 @@ from robbdd_tools.campaign.study_place import (
 from robbdd_tools.campaign.study_rates import study_rates
 from robbdd_tools.campaign.study_run import StudyRun
 from robbdd_tools.campaign.study_tables import write_table
+from robbdd_tools.campaign.study_traces import MEGABYTE
 from robbdd_tools.commands import CANNOT_TELL, FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -84,6 +86,19 @@ def export_rows(path: Path, output: Path, store: Path | None) -> int:
     return explained(lambda: _export_rows(study_folder(path, store), output))
 
 
+def clean_study(path: Path, store: Path | None, *, failures_stay: bool, everything: bool) -> int:
+    """Remove what a study keeps besides its results, or with ``everything`` the results as well."""
+
+    def work() -> int:
+        found = clean(study_folder(path, store), failures_stay=failures_stay, everything=everything)
+        results = "the results, " if everything else ""
+        megabytes = f"{found.size / MEGABYTE:.1f} MB"
+        print_line(f"removed {results}{_counted(found.traces, 'trace')} and {_counted(found.runs, 'run')}: {megabytes}")
+        return OK
+
+    return explained(work)
+
+
 def explained(work: Callable[[], int]) -> int:
     """Return the exit code of some work. If it fails, print the reason."""
     try:
@@ -92,6 +107,10 @@ def explained(work: Callable[[], int]) -> int:
         return fail(str(error))
     except OSError as error:
         return fail(f"{error.filename}: {error.strerror or error}" if error.filename else str(error))
+
+
+def _counted(number: int, word: str) -> str:
+    return f"{number:,} {word}{'' if number == 1 else 's'}"
 
 
 def _run_study(options: StudyOptions) -> int:
@@ -194,6 +213,9 @@ def _print_status(folder: Path) -> int:
         print_line(f"{name}: {tally.finished:,} of {total:,} executions, {state}")
         for line in standing(tally):
             print_line(line)
+        traces, size = kept_sizes(folder)
+        if traces:
+            print_line(f"{_counted(traces, 'trace')}: {size / MEGABYTE:.1f} MB")
     return OK
 
 

@@ -38,6 +38,7 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("path", metavar="FILE.study", type=Path)
         _allow_store(one)
         one.set_defaults(command=command)
+    _add_clean(commands.add_parser("clean", help="remove traces and replayed runs of a study, or all of its results"))
     replay = _add_replay(commands.add_parser("replay", help="execute executions of a study again, with traces"))
     outcomes = commands.add_parser("outcomes", help="count executions by factors and by their first violated clause")
     text = "factors or variables, such as robot,scale (default: all with several levels)"
@@ -54,6 +55,15 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         _allow_store(one)
     _add_plan(commands.add_parser("plan", help="print how many executions a wanted interval or comparison needs"))
     return run, resume, replay
+
+
+def _add_clean(clean: argparse.ArgumentParser) -> None:
+    clean.add_argument("path", metavar="FILE.study", type=Path)
+    chosen = clean.add_mutually_exclusive_group()
+    chosen.add_argument("--passed", action="store_true", help="only the traces of executions that hold")
+    chosen.add_argument("--all", action="store_true", help="also the results, and the study can begin again")
+    _allow_store(clean)
+    clean.set_defaults(command=_clean)
 
 
 def _add_replay(replay: argparse.ArgumentParser) -> argparse.ArgumentParser:
@@ -113,6 +123,12 @@ def _run(options: argparse.Namespace) -> int:
     with output_may_be_lost():
         chosen = (options.path, options.store, options.jobs, options.resumed, restart)
         return run_study(StudyOptions(*chosen, options.scheduler, options.send))
+
+
+def _clean(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.study import clean_study
+
+    return clean_study(options.path, options.store, failures_stay=options.passed, everything=options.all)
 
 
 def _replay(options: argparse.Namespace) -> int:

@@ -84,7 +84,8 @@ def uses_in_study(snapshot: Snapshot, uri: str, definition: Definition) -> Itera
 def _names(snapshot: Snapshot, uri: str) -> Iterator[tuple[Span, Definition]]:
     document = snapshot.document(uri)
     content = read_study(document)[0]
-    implementations = [one.implementation for one in content.factors if one.implementation is not None]
+    named = [word for one in content.factors for word in (one.implementation, *one.levels)]
+    implementations = [word for word in named if word is not None and word.is_name]
     for words, known_in in (
         (content.scenarios, scenarios_of_study),
         (implementations, implementations_of_study),

@@ -14,7 +14,7 @@ from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.quoted_completion import files_in_quotes
 from robbdd_tools.features.studies import implementations_of_study, scenarios_of_study, variables_of_study
 from robbdd_tools.features.study_words import WHOLE
-from robbdd_tools.syntax.study_content import DESIGNS
+from robbdd_tools.syntax.study_content import ALL, DESIGNS, FAILURES
 from robbdd_tools.syntax.study_text import REDUCING, SETTINGS
 from robbdd_tools.syntax.study_tokens import Token, study_tokens
 
@@ -41,6 +41,12 @@ _SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
     "a scene",
 )
 """Values that are names or files. Whatever else is expected is a word."""
+
+_CHOICES: Mapping[str, Sequence[str]] = {"design": DESIGNS, "traces": (FAILURES, ALL)}
+"""The words that begin the value of a setting."""
+_LENGTHS = {"timeout": 3, "design": 3, "traces": 4}
+"""The number of tokens of a value with its colon, of settings whose value is not one token."""
+_UNITS = {"timeout": "seconds", "traces": "MB"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +84,8 @@ def complete_study(snapshot: Snapshot, uri: str, offset: int) -> list[Completion
     if _SCENARIO in wanted:
         found += _names(document, cursor, scenarios_of_study(snapshot, uri), _listed(cursor.tokens))
     if _IMPLEMENTATION in wanted:
-        found += _names(document, cursor, implementations_of_study(snapshot, uri), [])
+        listed = _listed(cursor.tokens) if _BEHAVIOUR in wanted else []
+        found += _names(document, cursor, implementations_of_study(snapshot, uri), listed)
     if _VARIABLE in wanted:
         known = variables_of_study(snapshot, uri)
         local = {name: one for name, one in known.items() if "." not in name}
@@ -119,12 +126,12 @@ def _expected(tokens: Sequence[Token]) -> Sequence[str]:
         return _settings(inside) if given[-1:] == ["}"] else _list_value(setting, given)
     if setting == "stop":
         return _settings(inside) if kinds[-1:] == ["number"] and given[-2] != "rate" else _stop_value(given)
-    if setting == "design" and given == [":"]:
-        return DESIGNS
-    complete = len(given) == (3 if setting in ("timeout", "design") else 2)
+    if setting in _CHOICES and given == [":"]:
+        return _CHOICES[setting]
+    complete = len(given) == _LENGTHS.get(setting, 2)
     if complete:
         return _settings(inside)
-    return ("seconds",) if setting == "timeout" and kinds[-1:] == ["number"] else ()
+    return (_UNITS[setting],) if setting in _UNITS and kinds[-1:] == ["number"] else ()
 
 
 def _begins(tokens: Sequence[Token], place: int, one: Token) -> bool:
@@ -148,7 +155,7 @@ def _list_value(setting: str, given: Sequence[str]) -> Sequence[str]:
         return ("scene", "bhv", "var") if not given else (_IMPLEMENTATION,)
     if not opened:
         return ()
-    return (_SCENE,) if given[0] == "scene" else (_BEHAVIOUR,)
+    return (_SCENE,) if given[0] == "scene" else (_BEHAVIOUR, _IMPLEMENTATION)
 
 
 def _range_value(inside: Sequence[Token], given: Sequence[str], kinds: Sequence[str]) -> Sequence[str]:

@@ -32,6 +32,11 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
             "Ends the study early: when the 95 % interval of the pass rate is at most W wide, or when a pass rate of P "
             "is shown, or refuted in favour of Q. Rates and widths are between 0 and 1.",
         ),
+        "traces": (
+            "traces: failures N MB\ntraces: all N MB",
+            "Keeps traces (MCAP) of the executions that do not hold, or of all, up to N MB in total. "
+            "Those of failures have precedence, then the earlier ones. Without it: none.",
+        ),
         "design": (
             "design: latin-hypercube N\ndesign: sobol N\ndesign: grid N",
             "Executes each scenario at N points of the ranges: of a Latin hypercube, or of a Sobol sequence (2, 4, 8, "
@@ -39,10 +44,12 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
             "The seed determines the points.",
         ),
         "factor": (
-            'factor scene: { "A.scenex", … }\nfactor bhv <IMPL>: { NAME, … }\nfactor var <VARIABLE>: from A to B',
-            "Executes everything in the scene instances of each file, or with each catalog behaviour instead of an "
-            "implementation. All levels of all factors are combined, with the same seeds. A variable of scenarios "
-            "takes values of a range, at the points of the `design`, instead of those of the model.",
+            'factor scene: { "A.scenex", … }\nfactor bhv <IMPL>: { NAME, <IMPL>, … }\n'
+            "factor var <VARIABLE>: from A to B",
+            "Executes everything in the scene instances of each file, or with each catalog behaviour or other "
+            "implementation instead of an implementation. All levels of all factors are combined, with the same seeds. "
+            "A variable of scenarios takes values of a range, at the points of the `design`, instead of those of the "
+            "model.",
         ),
         "import": ('import "FILE"', "A model to execute: a `.bdd` or a `.bddx`."),
         "Study": ("Study NAME { … }", "Executes scenarios many times, in several configurations."),

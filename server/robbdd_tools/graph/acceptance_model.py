@@ -322,6 +322,7 @@ class AcceptanceModel:
     - ``executions``: the executions in written order.
     - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
     - ``verifies``: the requirements that a story, a variant, a template or a clause verifies.
+    - ``implementations``: all implementations of behaviours, also those that no execution uses.
     """
 
     stories: tuple[Story, ...]
@@ -332,6 +333,7 @@ class AcceptanceModel:
     trees: tuple[BehaviourTree, ...] = ()
     correct_places: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
     verifies: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
+    implementations: tuple[Implementation, ...] = ()
 
     def curie(self, iri: str) -> str:
         """Shorten an IRI by the longest namespace that it starts with. If there is none, return the IRI unchanged."""

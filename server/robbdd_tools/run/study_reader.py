@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -135,6 +135,15 @@ class StudyReader:
             ORDER BY execution.id"""
         for row in self._rows(query, (failures, clause, clause)):
             yield StoredExecution(*row)
+
+    def numbers(self, batch: int) -> list[int]:
+        """Return the numbers of the executions of a batch in its order."""
+        return [number for (number,) in self._rows("SELECT id FROM execution WHERE batch = ? ORDER BY id", (batch,))]
+
+    def failing(self, numbers: Iterable[int]) -> frozenset[int]:
+        """Return those of some executions, given by their numbers, that do not hold."""
+        query = "SELECT id FROM execution WHERE verdict != 0 AND id IN (SELECT value FROM json_each(?))"
+        return frozenset(number for (number,) in self._rows(query, (json.dumps(list(numbers)),)))
 
     def judged(self, number: int) -> list[tuple[Outcome, float | None, float | None]]:
         """Return verdict, margin and instant of each clause of an execution, which its number names."""

@@ -19,21 +19,34 @@ MOST_SECONDS = 1_000_000
 LATIN, SOBOL, GRID = "latin-hypercube", "sobol", "grid"
 DESIGNS = (LATIN, SOBOL, GRID)
 """The designs of ranges."""
+FAILURES, ALL = "failures", "all"
+"""The executions whose traces a study can keep."""
+MOST_TRACES = 1_000_000
+"""Limit of the size of kept traces in MB."""
 MOST_POINTS = 100_000
 """Limit of the points of a design."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A value of a study, and its place in the text."""
+    """A value of a study, and its place in the text. ``is_name`` is true for a name in angle brackets."""
 
     text: str
     span: Span
+    is_name: bool = False
+
+    @property
+    def words(self) -> str:
+        """The value as written."""
+        return f"<{self.text}>" if self.is_name else self.text
 
 
 @dataclass(frozen=True, slots=True)
 class Factor:
-    """A factor of a study. ``implementation`` is the implementation of a behaviour; ``None`` for scene instances."""
+    """A factor of a study. ``implementation`` is the implementation of a behaviour; ``None`` for scene instances.
+
+    The levels of an implementation are catalog behaviours, and names of other implementations.
+    """
 
     implementation: Word | None
     levels: tuple[Word, ...]
@@ -65,6 +78,17 @@ class Design:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class KeptTraces:
+    """The traces that a study keeps: those of all executions or, if ``failures``, of those that do not hold.
+
+    ``limit`` is the size of all of them in MB (1e6 bytes).
+    """
+
+    failures: bool
+    limit: int
+
+
 @dataclass(slots=True)
 class StudyText:
     """The contents of a ``.study`` file. ``numbers`` has the settings with a number by their names."""
@@ -78,6 +102,7 @@ class StudyText:
     factors: list[Factor] = field(default_factory=list[Factor])
     ranges: list[Range] = field(default_factory=list[Range])
     design: Design | None = None
+    traces: KeptTraces | None = None
     numbers: dict[str, float] = field(default_factory=dict[str, float])
     places: dict[str, Span] = field(default_factory=dict[str, Span])
     """The places of the names of settings."""

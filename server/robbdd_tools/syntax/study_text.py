@@ -9,9 +9,11 @@
             | "timeout" ":" number "seconds"
             | "stop" ":" ( "width" number | "rate" number "against" number )
             | "factor" "scene" ":" "{" text { "," text } "}"
-            | "factor" "bhv" "<" name ">" ":" "{" name { "," name } "}"
+            | "factor" "bhv" "<" name ">" ":" "{" level { "," level } "}"
             | "factor" "var" "<" name ">" ":" "from" number [ unit ] "to" number [ unit ]
+            | "traces" ":" ( "failures" | "all" ) whole number "MB"
             | "design" ":" ( "latin-hypercube" | "sobol" | "grid" ) whole number
+    level   = name | "<" name ">"
 
 The reader continues after an error with the next setting, so that all errors of a file are found at once.
 """
@@ -25,15 +27,19 @@ from typing import NamedTuple
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.syntax.study_content import (
+    ALL,
     DESIGNS,
+    FAILURES,
     MOST_BATCH,
     MOST_POINTS,
     MOST_REPETITIONS,
     MOST_SECONDS,
     MOST_SEED,
+    MOST_TRACES,
     SOBOL,
     Design,
     Factor,
+    KeptTraces,
     Range,
     StudyText,
     Word,
@@ -67,7 +73,7 @@ _NUMBERS: Mapping[str, _NumberRange] = {
 }
 REDUCING = ("first", "sample", "pairwise")
 """Settings of which a study has at most one."""
-SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "design", "factor")
+SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "traces", "design", "factor")
 """The words that begin a setting."""
 
 
@@ -120,6 +126,7 @@ class _Reader:
             "factor": self._factor,
             "stop": self._stop,
             "design": self._design,
+            "traces": self._traces,
         }
         if word.text not in SETTINGS or word.kind != "name":
             raise _Unexpected(word, f"'{word.text}' is not a setting of a study{_meant(word.text)}")
@@ -155,13 +162,20 @@ class _Reader:
         elif kind.text == "bhv":
             implementation = self._reference("the implementation of a behaviour, such as <my-server>")
             self._expect(":")
-            levels = self._list(lambda: _word(self._kind("name", "the name of a catalog behaviour")))
+            levels = self._list(self._behaviour)
             self._add(kind, Factor(implementation, levels))
         elif kind.text == "var":
             self._range()
         else:
             message = "a factor is 'scene', 'bhv' or 'var': other variables of scenarios vary in the model"
             raise _Unexpected(kind, message)
+
+    def _behaviour(self) -> Word:
+        wanted = "the name of a catalog behaviour, or of an implementation, such as <my-server-v2>"
+        if self._peek().kind == "reference":
+            return self._reference(wanted)
+        token = self._kind("name", wanted)
+        return Word(token.text, token.span)
 
     def _range(self) -> None:
         variable = self._reference("a variable of scenarios, such as <height>")
@@ -208,11 +222,24 @@ class _Reader:
             raise _Unexpected(token, f"a Sobol design has a power of two of points: write {below} or {2 * below}")
         self._found.design = Design(kind.text, size, Span(kind.span.start, token.span.end))
 
+    def _traces(self) -> None:
+        self._expect(":")
+        kind = self._take()
+        if kind.text not in (FAILURES, ALL):
+            raise _Unexpected(kind, "a study keeps the traces of 'failures' or of 'all', such as 'failures 500 MB'")
+        token = self._kind("number", f"a whole number from 1 to {MOST_TRACES}")
+        if "." in token.text or not 1 <= int(token.text) <= MOST_TRACES:
+            raise _Unexpected(token, f"expected a whole number from 1 to {MOST_TRACES}, not {token.text}")
+        self._expect("MB", "the unit 'MB'")
+        self._found.traces = KeptTraces(kind.text == FAILURES, int(token.text))
+
     def _add(self, place: Token, factor: Factor) -> None:
-        names = [level.text for level in factor.levels]
-        twice = next((level for number, level in enumerate(factor.levels) if level.text in names[:number]), None)
+        names = [level.words for level in factor.levels]
+        twice = next((level for number, level in enumerate(factor.levels) if level.words in names[:number]), None)
         if twice is not None:
-            raise _Unexpected(Token("", "", twice.span), f"the level '{twice.text}' is given twice: remove one of them")
+            raise _Unexpected(
+                Token("", "", twice.span), f"the level '{twice.words}' is given twice: remove one of them"
+            )
         own = factor.implementation and factor.implementation.text
         if any((one.implementation and one.implementation.text) == own for one in self._found.factors):
             raise _Unexpected(place, "this factor is given twice: write all of its levels into one list")
@@ -271,7 +298,7 @@ class _Reader:
         name = token.text[1:-1].strip()
         if not name:
             raise _Unexpected(token, f"expected {what}")
-        return Word(name, token.span)
+        return Word(name, token.span, is_name=True)
 
     def _kind(self, kind: str, what: str) -> Token:
         if self._peek().kind != kind:
@@ -309,10 +336,6 @@ class _Reader:
 
     def _report(self, error: _Unexpected) -> None:
         self.faults.append(Diagnostic(self._uri, error.token.span, Severity.ERROR, "syntax", str(error)))
-
-
-def _word(token: Token) -> Word:
-    return Word(token.text, token.span)
 
 
 def _shown(token: Token) -> str:

@@ -7,19 +7,24 @@ import platform
 import shutil
 import tempfile
 import threading
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
+from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.isolation import NO_USER_CODE, OWNER_FORBIDS, WORKER_USER_CODE
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.manifest_file import read_manifest
-from robbdd_tools.protocol.messages import RunFinished, encode
+from robbdd_tools.protocol.messages import ClauseJudged, RunFinished, RunMessage, encode
+from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.parcels import Moved, Parcel, unpack
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.scheduler import Scheduler
 from robbdd_tools.run.user_code import refusal
+from robbdd_tools.syntax.study_content import ALL
 from robbdd_tools.workbench.deciding_versions import differences, versions
 
 _POLL = 0.5
@@ -35,6 +40,7 @@ class Part:
     - ``origin``: the run folder of the batch on the machine that began the study.
     - ``versions``: the versions that the worker must have.
     - ``timeout``: the limit of wall time for one scenario in s.
+    - ``traces``: return the traces of ``failures``, or of ``all`` executions; empty for none.
     """
 
     batch: int
@@ -42,6 +48,7 @@ class Part:
     origin: str
     versions: Mapping[str, str]
     timeout: float
+    traces: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +59,7 @@ class PartResult:
     - ``ending``: why scenarios of the part are open; else empty.
     - ``seconds``: the wall time in s.
     - ``host``: the name of the worker's machine.
+    - ``traces``: the contents of wanted traces by the numbers of their scenarios.
     """
 
     lines: tuple[str, ...] = ()
@@ -59,6 +67,7 @@ class PartResult:
     ending: str = ""
     seconds: float = 0.0
     host: str = ""
+    traces: Mapping[int, bytes] = field(default_factory=dict[int, bytes])
 
 
 def execute_part(part: Part, used: Parcel, prepared: Parcel, folder: Path, wanted: Callable[[], bool]) -> PartResult:
@@ -85,11 +94,22 @@ def execute_part(part: Part, used: Parcel, prepared: Parcel, folder: Path, wante
         policy = Policy(jobs=1, timeout=part.timeout)
         scheduler = Scheduler(run_folder, manifest, policy, indices=part.indices)
         with _cancelling(scheduler, wanted):
-            lines = [encode(message) for message in scheduler.messages() if not isinstance(message, RunFinished)]
-        ending = moved.restored(scheduler.ending)
-        return PartResult(tuple(map(moved.restored, lines)), "", ending, monotonic() - began, host)
+            messages = [message for message in scheduler.messages() if not isinstance(message, RunFinished)]
+        lines, ending = map(encode, messages), moved.restored(scheduler.ending)
+        traces = dict(_traces(part, messages, run_folder))
+        return PartResult(tuple(map(moved.restored, lines)), "", ending, monotonic() - began, host, traces)
     finally:
         shutil.rmtree(work, ignore_errors=True)
+
+
+def _traces(part: Part, messages: Iterable[RunMessage], folder: Path) -> Iterator[tuple[int, bytes]]:
+    """Yield the wanted traces of a part with the numbers of their scenarios."""
+    judged = (message for message in messages if isinstance(message, ClauseJudged))
+    failing = {message.index for message in judged if message.verdict != Outcome.HOLDS}
+    for index in part.indices if part.traces else ():
+        trace = trace_file(folder, index)
+        if trace.is_file() and (part.traces == ALL or index in failing):
+            yield index, load_bytes(trace, RESULT_SIZE)
 
 
 def _forbid_user_code() -> None:

@@ -85,14 +85,16 @@ class Run(Recorded):
         *,
         seed: int | None = None,
         repeat: int | None = None,
+        traces: bool | None = None,
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
         """Prepare the run of a plan in a run folder. If this fails, the folder is removed.
 
+        ``traces`` says whether agents write traces; by default, they do if the run is kept.
         Raises ``OSError``, ``NothingSelected`` and ``UserCodeRefused``.
         """
         try:
-            recording = begin_recording(plan, place, policy, seed=seed, repeat=repeat)
+            recording = begin_recording(plan, place, policy, seed=seed, repeat=repeat, traces=traces)
         except BaseException:
             if place.number:
                 place.discard()
@@ -289,16 +291,17 @@ def begin_recording(
     *,
     seed: int | None = None,
     repeat: int | None = None,
+    traces: bool | None = None,
     models: Sequence[Path] = (),
     log: Path | None = None,
 ) -> Recording:
     """Write everything that agents need into a run folder, and record the beginning of the run in its database.
 
-    ``models`` are the model files, unless they are all models in the plan's folder. ``log`` is the log that is judged,
-    if nothing is simulated. Raises ``OSError``,
-    ``NothingSelected`` and ``UserCodeRefused``.
+    ``traces`` is as in ``Run.begin``. ``models`` are the model files, unless they are all models in the plan's folder.
+    ``log`` is the log that is judged, if nothing is simulated. Raises ``OSError``, ``NothingSelected`` and
+    ``UserCodeRefused``.
     """
-    manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
+    manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept if traces is None else traces)
     refuse_user_code(manifest, place.folder)
     recording = Recording(place, manifest)
     try:

@@ -1,6 +1,7 @@
-"""Substitute catalog behaviours for implementations of behaviours that a simulation does not have.
+"""Substitute other behaviours for implementations of behaviours.
 
-A substitution maps an implementation in a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog behaviour. If
+A substitution maps an implementation in a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog behaviour. In
+a study, it may also be another implementation of the model, whose name is in angle brackets (``<server-v2>``). If
 several substitutions name the same implementation, the last one is used.
 """
 
@@ -23,16 +24,19 @@ if TYPE_CHECKING:
 def parse_substitution(text: str) -> tuple[str, str]:
     """Read ``NAME=BEHAVIOUR``; raises ``SelectionError``."""
     name, equals, behaviour = (part.strip() for part in text.rpartition("="))
-    if not (name and equals and behaviour):
+    if not (name and equals and behaviour) or _other(behaviour):
         raise SelectionError(f"'{text}' is not NAME=BEHAVIOUR, such as my-server=pick-place")
     return name, behaviour
 
 
 def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str, str]) -> None:
-    """Raise ``SelectionError`` if no model has an implementation, or if the catalog lacks a behaviour."""
+    """Raise ``SelectionError`` if no model has an implementation, or if a substitute does not exist."""
     known: set[str] = set()
     local: set[str] = set()
+    others: dict[str, str] = {}
     for model in models:
+        for one in model.implementations:
+            others |= dict.fromkeys(_names(model, one.iri), _local(model, one.iri))
         for execution in model.executions:
             known |= _names(model, execution.implementation.iri)
             local.add(_local(model, execution.implementation.iri))
@@ -40,7 +44,11 @@ def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str
         if name not in known:
             there_are = f"the executions use {', '.join(sorted(local))}" if local else "the model has no executions"
             raise SelectionError(f"there is no behaviour implementation '{name}'; {there_are}")
-        if behaviour not in EXECUTORS:
+        other = _other(behaviour)
+        if other and other not in others:
+            listed = ", ".join(f"<{one}>" for one in sorted(set(others.values())))
+            raise SelectionError(f"there is no behaviour implementation '{other}'; the model has {listed}")
+        if not other and behaviour not in EXECUTORS:
             raise SelectionError(f"the catalog has no behaviour '{behaviour}'; it has {', '.join(EXECUTORS)}")
 
 
@@ -69,18 +77,32 @@ def _substituted(model: AcceptanceModel, execution: Execution, substitutions: Ma
         return execution
     behaviour = named[-1]
     refuse_unknown([model], {execution.implementation.iri: behaviour})
-    unfit = [one for one in _behaviours(model, execution.variant) if not executes(behaviour, one)]
+    other = _named(model, _other(behaviour))
+    if other is not None and other.iri == execution.implementation.iri:
+        return execution
+    executor = behaviour if other is None else other.name
+    is_catalog = other is None or other.kind == "catalog"
+    unfit = [one for one in _behaviours(model, execution.variant) if is_catalog and not executes(executor, one)]
     if unfit:
         raise SelectionError(
-            f"'{behaviour}' of the catalog does not execute '{unfit[0]}' of {_local(model, execution.iri)}: "
+            f"'{executor}' of the catalog does not execute '{unfit[0]}' of {_local(model, execution.iri)}: "
             f"substitute '{DEFAULT}' for {_local(model, execution.implementation.iri)}"
         )
-    return replace(execution, implementation=_replaced(execution.implementation, behaviour))
+    return replace(execution, implementation=other or _replaced(execution.implementation, behaviour))
 
 
 def _replaced(implementation: Implementation, behaviour: str) -> Implementation:
     stated = implementation.replaced or implementation.words
     return replace(implementation, kind="catalog", name=behaviour, replaced=stated)
+
+
+def _other(behaviour: str) -> str:
+    """Return the name of the implementation that a substitution names; empty for a catalog behaviour."""
+    return behaviour[1:-1] if behaviour.startswith("<") and behaviour.endswith(">") else ""
+
+
+def _named(model: AcceptanceModel, name: str) -> Implementation | None:
+    return next((one for one in model.implementations if name and name in _names(model, one.iri)), None)
 
 
 def _behaviours(model: AcceptanceModel, iri: Iri) -> Iterator[str]:

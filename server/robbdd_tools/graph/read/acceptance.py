@@ -21,7 +21,7 @@ from robbdd_tools.graph.rdf.records import Incomplete, Records
 from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, VERIFIES
 from robbdd_tools.graph.read.behaviour_trees import read_trees
 from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_names
-from robbdd_tools.graph.read.executions import read_executions
+from robbdd_tools.graph.read.executions import read_executions, read_implementations
 from robbdd_tools.graph.read.instances import InstanceReader, Places
 from robbdd_tools.graph.read.variations import VariationReader
 
@@ -51,7 +51,8 @@ def read_model(graph: Graph, places: Places = _nowhere, records: Records | None 
     trees = read_trees(records, places)
     correct = _correct_places(records, sets)
     verifies = {node: records.iris(records.all(node, VERIFIES)) for node in records.subjects(VERIFIES)}
-    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct, verifies)
+    known = read_implementations(records, places)
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct, verifies, known)
 
 
 def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> dict[Iri, tuple[Iri, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,15 @@ def read_executions(records: Records, instances: InstanceReader, places: Places)
     nodes = records.instances("bdd:ScenarioExecution")
     found = [execution for node in nodes for execution in _complete(records, node, instances, places)]
     return tuple(sorted(found, key=lambda one: (_position(records, one.iri), one.iri)))
+
+
+def read_implementations(records: Records, places: Places) -> tuple[Implementation, ...]:
+    """Return all implementations of behaviours in a graph, in the order of their IRIs."""
+    found: list[Implementation] = []
+    for node in sorted(records.instances("bdd:BehaviourImplementation")):
+        with suppress(Incomplete):
+            found.append(replace(_implementation(records, node), origin=places(node)))
+    return tuple(found)
 
 
 def _complete(records: Records, node: Iri, instances: InstanceReader, places: Places) -> Iterator[Execution]:
