@@ -87,7 +87,7 @@ def _observed(site: Site, found: Unjudged, owner: str) -> list[str]:
     arguments: tuple[tree.TextArgument, ...] = ()
     if isinstance(found.clause, tree.Fluent) and isinstance(found.clause.predicate, tree.TextPredicate):
         arguments = found.clause.predicate.arguments
-    targets = [site.target(argument.value) for argument in arguments]
+    targets = [site.target(argument.value) for argument in arguments if isinstance(argument.value, tree.Ref)]
     named = [target.symbol.path for target in targets if target is not None and target.kind in _VARIABLES]
     if named:
         return list(dict.fromkeys(named))

@@ -147,5 +147,5 @@ def _written(value: tree.Argument) -> str:
 
 
 def _text_sentence(predicate: tree.TextPredicate) -> str:
-    values = {argument.name.text: f"<{argument.value.path}>" for argument in predicate.arguments}
+    values = {argument.name.text: _written(argument.value) for argument in predicate.arguments}
     return re.sub(r"\{(\w+)\}", lambda match: values.get(match[1], match[0]), predicate.template.value)

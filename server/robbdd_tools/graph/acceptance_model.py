@@ -60,12 +60,15 @@ class Fluent:
 
 @dataclass(frozen=True, slots=True)
 class TextFluent:
-    """A fluent whose predicate is a text with placeholders such as ``{name}``."""
+    """A fluent whose predicate is a text with placeholders such as ``{name}``.
+
+    ``arguments`` maps each placeholder to a variable, an element or a literal.
+    """
 
     iri: Iri
     role: str
     template: str
-    arguments: Mapping[str, Iri]
+    arguments: Mapping[str, Iri | str]
     time: TimeConstraint
     conditions: tuple[Condition, ...] = ()
     seconds: Iri | None = None

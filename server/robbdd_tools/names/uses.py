@@ -151,7 +151,7 @@ class _Collector:
 
     def _phrase(self, node: tree.PhraseUse | tree.TextPredicate | tree.NamedUse, bound: Mapping[str, Bound]) -> None:
         if isinstance(node, tree.TextPredicate):
-            refs = [(argument.value, ANYTHING) for argument in node.arguments]
+            refs = [(one.value, ANYTHING) for one in node.arguments if isinstance(one.value, tree.Ref)]
             said = predicate_in_text(node.template.value, [one.name.text for one in node.arguments])
             phrase = "pred(…)" if said is None else said[0].phrase
         elif isinstance(node, tree.NamedUse):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from robbdd_tools.syntax.predicate_tree import NamedUse, PhraseUse
+from robbdd_tools.syntax.predicate_tree import Argument, NamedUse, PhraseUse
 from robbdd_tools.syntax.scene_tree import (
     Name,
     NamespaceArgument,
@@ -66,15 +66,15 @@ class Variable(Node):
 
 @dataclass(frozen=True, slots=True)
 class TextArgument(Node):
-    """``name=<variable>`` inside ``pred(…)``."""
+    """``name=<variable>`` or ``name="value"`` inside ``pred(…)``."""
 
     name: Name
-    value: Ref
+    value: Argument
 
 
 @dataclass(frozen=True, slots=True)
 class TextPredicate(Node):
-    """``pred("template", name=<variable>, …)``."""
+    """``pred("template", name=<variable>, other="value", …)``."""
 
     template: Text
     arguments: tuple[TextArgument, ...]

@@ -35,7 +35,7 @@ from robbdd_tools.graph.rdf.vocabulary import (
     TOGETHER,
     expand,
 )
-from robbdd_tools.graph.read.named_predicates import elements_named, read_arguments, read_use
+from robbdd_tools.graph.read.named_predicates import elements_named, read_arguments, read_use, read_value
 from robbdd_tools.monitor.time import OCCURRENCES, After, Before, During, TimeConstraint
 
 if TYPE_CHECKING:
@@ -105,11 +105,11 @@ class ClauseReader:
 
     def _text_fluent(self, iri: Iri, role: str) -> TextFluent:
         names = [str(name) for name in self.records.list_of(iri, "bdd:argument-names")]
-        variables = self.records.iris(self.records.list_of(iri, "bdd:argument-variables"))
-        if len(names) != len(variables):
-            raise Incomplete(f"{iri} has {len(names)} argument names for {len(variables)} variables")
+        values = [read_value(self.records, node) for node in self.records.list_of(iri, "bdd:argument-variables")]
+        if len(names) != len(values):
+            raise Incomplete(f"{iri} has {len(names)} argument names for {len(values)} variables")
         template = self.records.text(iri, "bdd:template-string")
-        arguments = dict(zip(names, variables, strict=True))
+        arguments = dict(zip(names, values, strict=True))
         time, conditions = self.time(iri), self._conditions(iri, "rbw:whenever")
         return TextFluent(iri, role, template, arguments, time, conditions, self._seconds(iri))
 

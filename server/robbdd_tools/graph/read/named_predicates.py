@@ -31,7 +31,7 @@ def read_use(records: Records, iri: Iri, inside: tuple[Iri, ...] = ()) -> tuple[
     ``inside`` are the predicates whose definitions contain it. Raises ``Incomplete``.
     """
     named = read_named(records, records.one(iri, "rbw:named-predicate"), inside)
-    values = [_value(records, node) for node in records.list_of(iri, "rbw:argument-list")]
+    values = [read_value(records, node) for node in records.list_of(iri, "rbw:argument-list")]
     if len(values) != len(named.slots):
         raise Incomplete(f"{iri} has {len(values)} values for the {len(named.slots)} parameters of {named.name}")
     return named, {slot.name: value for slot, value in zip(named.slots, values, strict=True)}
@@ -133,6 +133,7 @@ def _has_literal(records: Records, iri: Iri, term: str) -> bool:
     return len(records.iris(records.all(iri, term))) < len(records.all(iri, term))
 
 
-def _value(records: Records, node: Node) -> Iri | str:
+def read_value(records: Records, node: Node) -> Iri | str:
+    """Return a variable, an element, or a literal as text."""
     value = records.value(node)
     return value if isinstance(value, Iri) else str(value)

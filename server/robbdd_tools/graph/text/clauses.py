@@ -160,7 +160,13 @@ class ClauseText:
         for name in clause.arguments:
             if not NAME.fullmatch(name):
                 raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is not a valid name")
-        arguments = "".join(f", {name}={self._variable(value)}" for name, value in clause.arguments.items())
+        nodes = items_of(self.names.records, clause.iri, "bdd:argument-variables")
+        values = zip(clause.arguments.items(), nodes, strict=True)
+        written = (
+            (name, self._variable(value) if isinstance(value, Iri) else self.names.value(node))
+            for (name, value), node in values
+        )
+        arguments = "".join(f", {name}={value}" for name, value in written)
         return f"pred({quoted(clause.template)}{arguments})"
 
     def _condition(self, clause: Fluent | TextFluent, name: str) -> str:

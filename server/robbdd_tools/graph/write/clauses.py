@@ -18,7 +18,7 @@ from robbdd_tools.graph.rdf.vocabulary import (
     TOGETHER,
 )
 from robbdd_tools.graph.write.behaviour_trees import link_behaviour
-from robbdd_tools.graph.write.named_predicates import add_arguments, add_predicate
+from robbdd_tools.graph.write.named_predicates import add_arguments, add_predicate, written_value
 from robbdd_tools.graph.write.requirements import add_verified
 from robbdd_tools.graph.write.sink import Frame, Sink
 from robbdd_tools.graph.write.source_map import Location
@@ -173,7 +173,7 @@ class ClauseWriter:
         sink.add_types(node, ["bdd:StringTemplatePredicate"], at(predicate))
         template = sink.literal(predicate.template.value)
         sink.add(node, "bdd:template-string", template, at(predicate.template))
-        resolved = [(argument, self.frame.target(argument.value)) for argument in predicate.arguments]
+        resolved = [(argument, written_value(self.frame, argument.value)) for argument in predicate.arguments]
         known = [(argument, target) for argument, target in resolved if target is not None]
         names = sink.make_list(sink.literal(argument.name.text) for argument, _ in known)
         sink.add(node, "bdd:argument-names", names, at(predicate))

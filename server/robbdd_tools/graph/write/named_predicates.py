@@ -34,7 +34,7 @@ def add_predicate(frame: Frame, node: URIRef, predicate: tree.PhraseUse | tree.N
     sink.add(node, "rbw:named-predicate", target, frame.at(predicate.predicate))
     values: list[Node] = []
     for value in predicate.values:
-        found = _value(frame, value)
+        found = written_value(frame, value)
         if found is not None:
             sink.mark(node, "rbw:argument-list", found, frame.at(value))
             values.append(found)
@@ -47,7 +47,7 @@ def add_arguments(frame: Frame, node: URIRef, slots: Iterable[Slot], phrase: tre
     for slot in slots:
         argument = written.get(slot.name)
         if argument is not None:
-            frame.sink.add(node, slot.property, _value(frame, argument), frame.at(argument))
+            frame.sink.add(node, slot.property, written_value(frame, argument), frame.at(argument))
 
 
 def add_named_predicate(frame: Frame, predicate: tree.NamedPredicate) -> None:
@@ -93,7 +93,8 @@ def _state(frame: Frame, state: tree.State, name: str) -> URIRef | None:
     return node
 
 
-def _value(frame: Frame, argument: tree.Argument) -> Node | None:
+def written_value(frame: Frame, argument: tree.Argument) -> Node | None:
+    """Return the node of an argument: a variable, an element or a literal."""
     match argument:
         case tree.Ref():
             return frame.target(argument)
