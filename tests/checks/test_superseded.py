@@ -39,6 +39,23 @@ def test_a_mistake_is_reported_once(code: str) -> None:
     assert [entry.code for entry in found] == [code], found
 
 
+def test_a_contradiction_in_a_template_is_not_repeated_at_the_values_of_its_variants() -> None:
+    variant = STORY[STORY.index("        Scenario ") : STORY.rindex("}")]
+    more = "".join(variant.replace("bench-to-tray", name) for name in ("again", "third"))
+    text = EVENTS + TEMPLATE.replace("located at <goal>, before", "held by <goal>, before") + STORY.rpartition("}")[0]
+    sibling = TEMPLATE.replace("fetch", "bring").replace("on-bench", "at-bench").replace("in-tray", "at-tray")
+    of_sibling = STORY.replace("fetch", "bring").replace("bench-to-tray", "other")
+    for models in (text + more + "}\n", text + "}\n" + sibling.replace("carry", "bear") + of_sibling):
+        case = fixture(models)
+        found = [one for one in all_diagnostics(case.snapshot, case.uri) if one.severity < Severity.WARNING]
+        assert {one.code for one in found} == {"type-conflict"}
+        assert all(one.span.start < models.index("User Story") for one in found)
+    # A value that contradicts sound clauses is still reported at each of its places.
+    wrong = fixture((MODEL.rpartition("}")[0] + more + "}\n").replace("{ <arms.panda> }", "{ <parts.bolt> }"))
+    found = [one for one in all_diagnostics(wrong.snapshot, wrong.uri) if one.severity < Severity.WARNING]
+    assert [one.code for one in found] == ["type-conflict"] * 3
+
+
 def test_what_only_a_shape_finds_is_still_told() -> None:
     case = fixture(MODEL.replace("0.5 seconds", "-1 seconds"))
     found = {entry.code for entry in all_diagnostics(case.snapshot, case.uri)}

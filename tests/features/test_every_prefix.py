@@ -13,6 +13,7 @@ from kit import MODELS, SCENE
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.cursor import cursor_at
+from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.chunk import parse_chunk
@@ -58,7 +59,16 @@ Scenario Template (ns=t) welding {
                    and holds(<tool> does not drop <part> whenever <part> is held by <tool>
                    and <part> is at rest, from <go> until <stop>) ) )
             (var y exists in <seams>) such that { "the seam is clean" after every <stop> }
-            text: holds(pred("{a} shines", a=<part>), 0.5 seconds after the last <stop>)
+            text: holds(pred("{a} shines", a=<part>, b="red", c=0.5 m), 0.5 seconds after the last <stop>)
+    }
+    Then:
+        still: holds(<part> is at rest, after <stop>)
+    When:
+        Behaviour (ns=t) lift { duration: from <grip> until <stop> <tool> picks <part> }
+        meanwhile Behaviour (ns=t) hold { duration: from <go> until <stop> <tool> picks <part> }
+    Given: calm: holds(<part> is at rest, before <grip>)
+    for all (var seam in <seams>) {
+        When: Behaviour (ns=t) back { duration: from <grip> until <stop> <tool> picks <part> }
     }
 }
 User Story (ns=t) welds {
@@ -146,9 +156,16 @@ def faults_after(path: Path, end: int) -> Iterator[str]:
     for entry in entries:
         if not is_accepted(language, applied(before, len(text), entry) + " "):
             yield f"'{entry.text}' does not parse after '…{before[-60:]}'"
-    if not is_accepted(language, before) or is_accepted(language, f"{before}{UNKNOWN} "):
+    if not is_accepted(language, before):
         return
-    offered = {entry.text.split()[0] for entry in entries if entry.text}
+    offered = {plain(entry).split()[0] for entry in entries if entry.text}
+    if is_accepted(language, f"{before}{UNKNOWN} "):
+        # Any word is accepted as a name; the parser says which ones are keywords there.
+        expected = place_after(language, before).expected
+        for word in words(language) & (frozenset() if expected is None else expected.literals):
+            if word not in {re.split(r"[^\w\-]", one)[0] for one in offered}:
+                yield f"'{word}' is missing beside a name after '…{before[-60:]}'"
+        return
     for word in words(language):
         if word not in offered and is_accepted(language, f"{before}{word} "):
             yield f"'{word}' is missing after '…{before[-60:]}'"

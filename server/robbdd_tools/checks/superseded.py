@@ -48,6 +48,12 @@ def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic])
 
 
 @cache
+def role_shapes() -> frozenset[str]:
+    """Return the codes of the shapes that report values of another kind than the clauses of their variable require."""
+    return frozenset((*SUPERSEDED["type-conflict"], *_quantity_shapes("type-conflict")))
+
+
+@cache
 def _quantity_shapes(rule: str) -> tuple[str, ...]:
     """Return the codes of the shapes of quantities that report the same mistake as a rule."""
     words = load_catalog().predicates.values()

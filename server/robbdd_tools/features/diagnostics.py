@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks import run_checks
+from robbdd_tools.checks.contradicted_values import without_contradicted
 from robbdd_tools.checks.graph_files import graph_findings
 from robbdd_tools.checks.superseded import without_superseded
 from robbdd_tools.features.fixes import with_fixes
@@ -71,7 +72,7 @@ def shape_diagnostics(
         found = validation.run(snapshot, uri, project, is_superseded)
     files = dict.fromkeys(diagnostic.uri for diagnostic in found)
     reported = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
-    return without_superseded(found, reported)
+    return without_contradicted(snapshot, without_superseded(found, reported))
 
 
 def text_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
