@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Literal, Protocol
 
+from robbdd_tools.base.solid_shapes import Inertia
 from robbdd_tools.base.solid_shapes import Shape as Shape
 from robbdd_tools.base.solid_shapes import ShapeKind as ShapeKind
 from robbdd_tools.base.solid_shapes import Vector as Vector
@@ -260,6 +261,8 @@ class ObjectModel:
     """Standard places (m; x, y on the surface below; z is ignored for an object on a table), best first."""
     parts: tuple[Region, ...] = ()
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
+    inertia: Inertia | None = None
+    """How its mass is distributed, if it is not evenly in its shapes."""
     frame: Vector = (0.0, 0.0, 0.0)
     """Position (m) of the frame that poses in a scene refer to: the body frame of its file."""
     joint: PassiveJoint | None = None

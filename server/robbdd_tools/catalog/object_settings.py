@@ -53,7 +53,7 @@ def object_has(model: ObjectModel, name: str) -> bool:
 
 def is_scalable(model: ObjectModel) -> bool:
     """Return whether an object is a loose container. A sphere keeps its proportions."""
-    round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
+    round_ones = any(shape.kind is ShapeKind.SPHERE or shape.solid is not None for shape in model.shapes)
     return model.free and model.region is not None and not round_ones
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.base.solid_shapes import Solid, SolidKind
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.belts import add_belt
@@ -24,6 +25,7 @@ from robbdd_tools.world.placement import FLOOR, TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
+from robbdd_tools.world.solids import ENGINE
 from robbdd_tools.world.staging import Staging
 from robbdd_tools.world.tilted_base import UPRIGHT, rotation_of
 
@@ -164,17 +166,38 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
         body.add_freejoint()
     if joint is not None:
         add_joint(spec, body, name, model)
+    if model.inertia is not None:
+        body.explicitinertial, body.mass = True, model.mass
+        body.ipos = list(model.inertia.center)
+        body.fullinertia = [model.mass * moment for moment in model.inertia.moments]
     volumes = [_volume(shape) for shape in model.shapes]
     for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
         carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)
         geom = carrier.add_geom(name=shape_name(name, index), type=_geom_type(shape.kind), size=list(shape.size))
         geom.pos = list(shape.position)
         geom.mass = model.mass * volume / sum(volumes)
-        geom.friction = [model.friction, TORSION, ROLLING]
+        geom.friction = [model.friction if shape.friction is None else shape.friction, TORSION, ROLLING]
         geom.condim = 4 if shape.kind is ShapeKind.BOX else 6
-        geom.rgba = list(model.color)
+        geom.rgba = list(shape.color or model.color)
+        if shape.solid is not None:
+            _use_solid(spec, geom, shape, shape.solid)
         geom.contype = THINGS
         geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
+
+
+def _use_solid(spec: Any, geom: Any, shape: Shape, solid: Solid) -> None:
+    """Let a solid of a file take the place of its bounding box."""
+    geom.type = ENGINE[solid.kind]
+    geom.condim = 4 if solid.kind in (SolidKind.BOX, SolidKind.MESH) else 6
+    if solid.kind is SolidKind.MESH:
+        # The mass is the object's; a flat mesh has no volume of its own.
+        points = [coordinate for vertex in solid.vertices for coordinate in vertex]
+        spec.add_mesh(name=f"{geom.name}/hull", uservert=points, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+        geom.meshname = f"{geom.name}/hull"
+        return
+    geom.size = list(solid.size)
+    geom.pos = [place + way for place, way in zip(shape.position, solid.offset, strict=True)]
+    geom.quat = list(solid.rotation)
 
 
 def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:

@@ -61,6 +61,7 @@ def centred(model: ObjectModel) -> ObjectModel:
     return replace(
         model,
         shapes=tuple(replace(shape, position=moved(shape.position)) for shape in model.shapes),
+        inertia=None if model.inertia is None else replace(model.inertia, center=moved(model.inertia.center)),
         rest_height=float(high[2] - low[2]) / 2,
         region=None if model.region is None else moved_region(model.region),
         parts=tuple(map(moved_region, model.parts)),

@@ -12,7 +12,7 @@ import numpy as np
 from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.base.model_paths import package_share
-from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
+from robbdd_tools.catalog.api import ObjectModel, Region, Shape
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
@@ -27,6 +27,7 @@ from robbdd_tools.world.moving_parts import (
     name_of_body,
     rigid_root,
 )
+from robbdd_tools.world.solids import inertia_in, shape_in
 from robbdd_tools.world.urdf_files import is_urdf, read_urdf, speeds
 
 if TYPE_CHECKING:
@@ -36,12 +37,6 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource
 
 SITE = "workspace"
-ALIGNED = 1e-6
-_KINDS = {
-    int(mujoco.mjtGeom.mjGEOM_BOX): ShapeKind.BOX,
-    int(mujoco.mjtGeom.mjGEOM_SPHERE): ShapeKind.SPHERE,
-    int(mujoco.mjtGeom.mjGEOM_CYLINDER): ShapeKind.CYLINDER,
-}
 
 
 def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
@@ -149,8 +144,8 @@ class FromFile:
 def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
     """Return an object from a body of a file, by default the first; raises ``SceneError``.
 
-    It consists of the collision shapes of the body and of everything fixed to it. Boxes, spheres and cylinders aligned
-    with the body are kept; any other shape becomes its bounding box. It can move if the file gives it a free joint or,
+    It consists of the collision shapes of the body and of everything fixed to it, with their friction and colours, and
+    its mass is distributed as in the file. A mesh is its convex hull. It can move if the file gives it a free joint or,
     in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else the
     space above it. Bodies with joints are moving parts; their workspaces are box sites.
     """
@@ -173,15 +168,16 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         prefixes=(),
         shapes=main.shapes,
         mass=max(main.mass, 1e-3),
-        friction=float(model.geom_friction[main.geoms[0], 0]),
+        friction=main.friction,
         free=free,
         graspable=free and not carries and not parts,
         rest_height=-float(low[2]),
-        color=_color(model.geom_rgba[main.geoms[0]]),
+        color=main.color,
         doc=f"from {source.name}",
         region=own,
         parts=tuple(region for region in sites.get(body, ()) if region.name),
         joint=replace(joint_of(model, data, body, 0, source), handle=main.handle) if jointed else None,
+        inertia=main.inertia if free or jointed else None,
     )
     name, joint = name_of_body(model, body), joint_name(model, body) if jointed else ""
     return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts)
@@ -200,7 +196,10 @@ class _Rigid:
         ]
         if not self.geoms:
             raise SceneError(f"the body '{model.body(body).name}' has no collision shape", origin=source.origin)
-        self.shapes = tuple(_shape(model, data, geom, body) for geom in self.geoms)
+        self.friction = float(model.geom_friction[self.geoms[0], 0])
+        self.color = _color(model.geom_rgba[self.geoms[0]])
+        self.shapes = tuple(self._looking(model, geom, shape_in(model, data, geom, body)) for geom in self.geoms)
+        self.inertia = inertia_in(model, data, own, body, self.shapes)
         self.names = tuple(str(model.geom(geom).name) for geom in self.geoms)
         bodies = [str(model.body(int(model.geom_bodyid[geom])).name) for geom in self.geoms]
         # The name of the moving body itself is not that of one of its shapes.
@@ -209,6 +208,15 @@ class _Rigid:
         ]
         self.handle = handle_of(f"{one} {other}" for one, other in zip(self.names, bodies, strict=True))
         self.mass = float(sum(model.body_mass[index] for index in own))
+
+    def _looking(self, model: Any, geom: int, shape: Shape) -> Shape:
+        """Return a shape with its own friction and colour where they differ from those of the first shape."""
+        friction, painted = float(model.geom_friction[geom, 0]), _color(model.geom_rgba[geom])
+        return replace(
+            shape,
+            friction=None if friction == self.friction else friction,
+            color=None if painted == self.color else painted,
+        )
 
 
 def _part(
@@ -223,15 +231,16 @@ def _part(
         prefixes=(),
         shapes=rigid.shapes,
         mass=max(rigid.mass, 1e-3),
-        friction=float(model.geom_friction[rigid.geoms[0], 0]),
+        friction=rigid.friction,
         free=False,
         graspable=False,
         rest_height=0.0,
-        color=_color(model.geom_rgba[rigid.geoms[0]]),
+        color=rigid.color,
         doc=f"a moving part from {source.name}",
         region=next((region for region in regions if not region.name), None),
         parts=tuple(region for region in regions if region.name),
         joint=replace(joint_of(model, data, body, parent, source), handle=rigid.handle),
+        inertia=rigid.inertia,
     )
     return MovingPart(name_of_body(model, body), joint_name(model, body), made, rigid.names)
 
@@ -252,25 +261,6 @@ def _body(model: Any, source: ModelSource, name: str) -> int:
     if name and name not in names:
         raise SceneError(f"{source.name} has no body '{name}'; it has {', '.join(names)}", origin=source.origin)
     return names.index(name) + 1 if name else 1
-
-
-def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
-    """Return a collision shape in the frame of a body."""
-    frame = data.xmat[body].reshape(3, 3)
-    turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
-    center = frame.T @ (data.geom_xpos[geom] - data.xpos[body])
-    kind = _KINDS.get(int(model.geom_type[geom]))
-    size = model.geom_size[geom]
-    upright = np.abs(turn - np.eye(3)).max() < ALIGNED
-    if kind is ShapeKind.SPHERE:
-        return Shape(kind, (float(size[0]), 0.0, 0.0), _vector(center))
-    if kind is ShapeKind.CYLINDER and (upright or abs(turn[2, 2]) > 1 - ALIGNED):
-        return Shape(kind, (float(size[0]), float(size[1]), 0.0), _vector(center))
-    if kind is ShapeKind.BOX and upright:
-        return Shape(kind, _vector(size), _vector(center))
-    box = model.geom_aabb[geom]
-    half = np.abs(turn) @ box[3:]
-    return Shape(ShapeKind.BOX, _vector(half), _vector(center + turn @ box[:3]))
 
 
 def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[int, tuple[Region, ...]]:

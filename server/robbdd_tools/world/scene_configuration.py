@@ -89,7 +89,8 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case "mass" if able is not None:
             found.objects[element] = replace(able, mass=value[0])
         case "friction" if able is not None:
-            found.objects[element] = replace(able, friction=value[0])
+            even = tuple(replace(shape, friction=None) for shape in able.shapes)
+            found.objects[element] = replace(able, friction=value[0], shapes=even)
         case "belt_speed" if able is not None:
             found.objects[element] = _driven(able, value[0])
         case "height_scale" if able is not None:
@@ -148,6 +149,7 @@ def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
     return replace(
         model,
         shapes=tuple(map(taller, model.shapes)),
+        inertia=None,
         region=None if model.region is None else stretched(model.region),
         parts=tuple(map(stretched, model.parts)),
     )
