@@ -58,7 +58,7 @@ DOES_NOT_DROP = Predicate(
     name="does-not-drop",
     phrase="<agent> does not drop <object>",
     rdf_type="bdd:DoesNotDropPredicate",
-    synonyms=("drop", "drops", "lose", "loses", "fall", "falls", "let go"),
+    synonyms=("drop", "drops", "lose", "loses", "fall", "falls"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
