@@ -41,6 +41,7 @@ SECTIONS = {
             "assistants/SKILL",
             "assistants/language",
             "troubleshooting",
+            "upgrading",
         ),
     ),
     "Examples": (),
