@@ -143,3 +143,12 @@ def test_each_word_of_a_setting_of_a_study_is_described() -> None:
 def test_a_proposed_keyword_of_one_construct_is_described_by_it() -> None:
     case = fixture("//- main.bdd\n$0")
     assert "at least one element" in str(describe_entry(case.snapshot, "keyword", case.uri, "exists in"))
+
+
+def test_the_words_of_a_named_predicate_are_not_those_of_the_loop_around_it() -> None:
+    loop = "for all (var x in <s>) { When: <r> picks <x> Then: holds(<x> is-stored $0in <b>, after <e>) }"
+    found = at(f"Scenario Template (ns=t) a {{ set var s var b var r {loop} }}")
+    assert "Defines a predicate from others" in found
+    assert "Repeats its body" not in found
+    loop = "for all (var x $0in <s>) { When: <r> picks <x> }"
+    assert "Repeats its body" in at(f"Scenario Template (ns=t) a {{ set var s var r {loop} }}")

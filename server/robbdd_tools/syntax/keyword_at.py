@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 CACHED = 4
 """Texts whose objects are kept, since hovers of one reader are close to each other."""
+PHRASE_WORD = "PhraseWord"
+"""The rule of the words in the phrase of a named predicate, which may be written like keywords."""
 _STORY = re.compile(r"\s*User\b")
 
 
@@ -58,11 +60,9 @@ def keyword_at(language: str, text: str, offset: int) -> Keyword | None:
     declaration = _declaration(language, text)
     if declaration is None:
         return Keyword(match["word"], "", span)
-    for node in reversed(_around(declaration, offset)):
-        rule = _rule_of(language, type(node).__name__, match["word"])
-        if rule is not None:
-            return Keyword(match["word"], rule, span)
-    return None
+    innermost = type(_around(declaration, offset)[-1]).__name__
+    rule = PHRASE_WORD if innermost == PHRASE_WORD else _rule_of(language, innermost, match["word"])
+    return None if rule is None else Keyword(match["word"], rule, span)
 
 
 @cache
