@@ -30,13 +30,18 @@ class FrameSources:
 
     def of_transforms(self, topic: str) -> TrackBuilder:
         """Return the builder of a topic of transforms; the static ones of a namespace are with the others."""
-        space, _, name = topic.rpartition("/")
-        group = f"{space}/{TRANSFORMS}" if name == STATIC else topic
-        return self._transforms.setdefault(group, TrackBuilder())
+        found = self._transforms.get(topic)
+        if found is None:
+            # Static transforms are few; the others take this way once.
+            found = self._transforms.setdefault(_group(topic), TrackBuilder())
+        return found
 
     def of_topic(self, topic: str) -> TrackBuilder:
         """Return the builder of a topic that publishes poses."""
-        return self._topics.setdefault(topic, TrackBuilder())
+        found = self._topics.get(topic)
+        if found is None:
+            found = self._topics[topic] = TrackBuilder()
+        return found
 
     def absorb(self, other: FrameSources) -> None:
         """Add the poses of another object."""
@@ -47,9 +52,7 @@ class FrameSources:
 
     def drop(self, topic: str, frame: str) -> None:
         """Forget the poses of a frame on a topic."""
-        space, _, name = topic.rpartition("/")
-        group = f"{space}/{TRANSFORMS}" if name == STATIC else topic
-        for builder in (self._transforms.get(group), self._topics.get(topic)):
+        for builder in (self._transforms.get(_group(topic)), self._topics.get(topic)):
             if builder is not None:
                 builder.drop(frame)
 
@@ -80,6 +83,12 @@ class FrameSources:
                 listed = ", ".join(f"'{topic.strip('/')}'" for topic in tracks)
                 remarks.append(f"several topics have poses of '{frame}': they are called {listed}")
         return found
+
+
+def _group(topic: str) -> str:
+    """Return the topic of the transforms that move, for one of static ones."""
+    space, _, name = topic.rpartition("/")
+    return f"{space}/{TRANSFORMS}" if name == STATIC else topic
 
 
 def _joined(groups: Mapping[str, dict[str, Track]], remarks: list[str]) -> dict[str, Track]:
