@@ -64,6 +64,7 @@ HOMES = {
     "scipy": {"campaign"},
     "distributed": {"campaign"},
     "duckdb": {"campaign"},
+    "reqif": {"workbench"},
     "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
     "msgpack": {"user_code"},

@@ -87,3 +87,17 @@ def test_our_cells_are_those_of_the_csv_module() -> None:
     assert [(row.text, row.source) for row in rows[:2]] == [('say "x", then "y"', ""), ("plain", "a,b")]
     assert next(csv.reader([table_text(rows).splitlines()[1]]))[2] == 'say "x", then "y"'
     assert model_text(rows[:1], "x:").count("Requirement") == 1
+
+
+def test_a_graph_is_not_taken_for_a_model_without_requirements(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    graph = tmp_path / "needs.ttl"
+    assert main(["graph", model(tmp_path, NEED)]) == 0
+    graph.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(["requirements", str(graph)]) == 2
+    command = capsys.readouterr().err.partition("(robbdd ")[2].partition(")")[0].split()
+    text = tmp_path / "text.bdd"
+    assert main([*command[:-1], str(text)]) == 0
+    assert main(["requirements", str(text), "--links-only"]) == 0
+    assert "R-1: fetching.bench-to-tray" in capsys.readouterr().out

@@ -40,11 +40,17 @@ def _add_runs(commands: AddsCommands) -> None:
 
 def _add_requirements(commands: AddsCommands) -> None:
     listed = commands.add_parser(
-        "requirements", help="coverage of requirements by scenarios and stored runs; CSV tables"
+        "requirements", help="coverage of requirements by scenarios and stored runs; CSV and ReqIF"
     )
-    listed.add_argument("path", metavar="FILE|DIR|TABLE.csv", type=Path, help="models, or a table to import")
+    listed.add_argument("path", metavar="FILE|DIR|TABLE.csv|SPEC.reqif", type=Path, help="models, or a file to import")
     listed.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*")
-    listed.add_argument("-o", "--output", metavar="OUT", type=Path, help="write a CSV table; of a table, the model")
+    listed.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        type=Path,
+        help="write a .csv, a .reqif or a page (.html); of a table, the model",
+    )
     listed.add_argument("--links-only", action="store_true", help="only whether a scenario verifies each; no results")
     listed.add_argument("--namespace", metavar="IRI", help="namespace of the requirements of a table")
     listed.add_argument("--force", action="store_true", help="replace an existing model")
@@ -55,7 +61,7 @@ def _add_requirements(commands: AddsCommands) -> None:
 def _requirements(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.list_requirements import import_requirements, list_requirements
 
-    if options.path.suffix.lower() == ".csv":
+    if options.path.suffix.lower() in (".csv", ".reqif"):
         return import_requirements(options.path, options.output, options.namespace, overwrite=options.force)
     paths = (options.path, *options.more)
     return list_requirements(paths, options.store, options.output, links_only=options.links_only)

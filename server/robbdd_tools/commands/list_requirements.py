@@ -1,4 +1,4 @@
-"""``robbdd requirements``: the coverage of requirements by scenarios and stored runs; tables of other tools."""
+"""``robbdd requirements``: the coverage of requirements by scenarios and stored runs; files of other tools."""
 
 from __future__ import annotations
 
@@ -7,14 +7,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools.base.files import read_text
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FINDINGS, OK
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.rejudged_results import SIGNS
 from robbdd_tools.features.run_verdicts import NOTHING
+from robbdd_tools.workbench.coverage_page import SUFFIXES, coverage_page
 from robbdd_tools.workbench.model import load_all
 from robbdd_tools.workbench.named_files import NotAModel
+from robbdd_tools.workbench.reqif_file import SUFFIX, read_reqif, reqif_text
 from robbdd_tools.workbench.requirement_table import (
     NO_SCENARIO,
     RequirementRow,
@@ -31,14 +34,19 @@ _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`]*[/#:]")
 
 
 def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | None, *, links_only: bool) -> int:
-    """Print the coverage of the requirements of models, and write it as CSV to ``output``; return the exit code.
+    """Print the coverage of the requirements of models, and write it to ``output``; return the exit code.
 
-    It is 1 unless each requirement is verified and, without ``links_only``, held in the last runs.
+    The suffix of ``output`` selects ReqIF, a page (HTML) or CSV. The exit code is 1 unless each requirement is verified
+    and, without ``links_only``, held in the last runs.
     """
     try:
         model = load_all(paths)
     except NotAModel as error:
         return fail(str(error))
+    graph = next((file.name for file in model.files if graph_format(file.name)), None)
+    if graph is not None:
+        made = f"robbdd import {graph} -o {Path(graph).stem}.bdd"
+        return fail(f"requirements in graphs are not read: write {graph} as text ({made}), and name that file")
     errors = [finding for finding in model.diagnostics if finding.is_error]
     if errors:
         print_findings(errors, print_note)
@@ -50,17 +58,19 @@ def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | 
         print_line(_line(row, links_only=links_only))
     if output is not None:
         try:
-            replace_file(output, table_text(rows))
+            replace_file(output, _written(output, rows, links_only=links_only))
+        except TableProblem as error:
+            return fail(str(error))
         except OSError as error:
             return fail(f"cannot write {output}: {error.strerror}")
-    missing = [row for row in rows if row.verdict == NO_SCENARIO or (not links_only and row.verdict != "holds")]
+    missing = [row for row in rows if not row.is_shown(links_only=links_only)]
     proved = "verified by a scenario" if links_only else "shown by the last runs"
     print_line(f"{len(rows) - len(missing)} of {len(rows)} requirements {proved}")
     return FINDINGS if missing else OK
 
 
 def import_requirements(table: Path, output: Path | None, namespace: str | None, *, overwrite: bool) -> int:
-    """Write the requirements of a CSV table as a model; return the exit code."""
+    """Write the requirements of a CSV table or a ReqIF file as a model; return the exit code."""
     if output is None or namespace is None:
         return fail(f"to import {table}, name the model (-o NEEDS.bdd) and its namespace (--namespace IRI)")
     if not _IRI.fullmatch(namespace):
@@ -71,7 +81,7 @@ def import_requirements(table: Path, output: Path | None, namespace: str | None,
     if output.exists() and not overwrite:
         return fail(f"{output} exists: add --force to replace it")
     try:
-        rows = read_table(table, text)
+        rows = read_reqif(table, text) if table.suffix.lower() == SUFFIX else read_table(table, text)
         replace_file(output, model_text(rows, namespace))
     except TableProblem as error:
         return fail(str(error))
@@ -79,6 +89,14 @@ def import_requirements(table: Path, output: Path | None, namespace: str | None,
         return fail(f"cannot write {output}: {error.strerror}")
     print_line(f"{len(rows)} requirement{'' if len(rows) == 1 else 's'} in {output}")
     return OK
+
+
+def _written(output: Path, rows: Sequence[RequirementRow], *, links_only: bool) -> str:
+    """Return the content of a file of requirements in the format of its suffix. Raises ``TableProblem``."""
+    suffix = output.suffix.lower()
+    if suffix == SUFFIX:
+        return reqif_text(output, rows)
+    return coverage_page(rows, links_only=links_only) if suffix in SUFFIXES else table_text(rows)
 
 
 def _line(row: RequirementRow, *, links_only: bool) -> str:

@@ -37,6 +37,23 @@ class TableProblem(Exception):
 
 
 @dataclass(frozen=True, slots=True)
+class ScenarioCell:
+    """The result of the latest executions of a scenario for a requirement; ``outcome`` is empty if it was never run."""
+
+    scenario: str
+    outcome: str
+    held: int
+    executions: int
+    vacuous: bool
+    stale: bool
+
+    @property
+    def remarks(self) -> list[str]:
+        """The reasons why the result is no proof."""
+        return [VACUOUS] * self.vacuous + [STALE] * self.stale
+
+
+@dataclass(frozen=True, slots=True)
 class RequirementRow:
     """A requirement with its coverage.
 
@@ -48,10 +65,27 @@ class RequirementRow:
     identifier: str
     text: str
     source: str
-    scenarios: tuple[str, ...] = ()
-    held: int = 0
-    executions: int = 0
+    evidence: tuple[ScenarioCell, ...] = ()
     verdict: str = NO_SCENARIO
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """The scenarios that verify it."""
+        return tuple(cell.scenario for cell in self.evidence)
+
+    @property
+    def held(self) -> int:
+        """The number of executions that satisfied it."""
+        return sum(cell.held for cell in self.evidence)
+
+    @property
+    def executions(self) -> int:
+        """The number of executions of its scenarios."""
+        return sum(cell.executions for cell in self.evidence)
+
+    def is_shown(self, *, links_only: bool) -> bool:
+        """Return whether it is satisfied; with ``links_only``, whether some scenario verifies it."""
+        return bool(self.evidence) if links_only else self.verdict == "holds"
 
     @property
     def cells(self) -> tuple[str, ...]:
@@ -84,10 +118,13 @@ def _row(snapshot: Snapshot, found: Coverage) -> RequirementRow:
     root = None if site is None else site.tree
     texts = (root.identifier, root.text, root.source) if isinstance(root, tree.Requirement) else (None, None, None)
     identifier, text, source = ("" if one is None else one.value for one in texts)
-    scenarios = tuple(one.verifier.variant.definition.symbol.path for one in found.evidence)
-    held, executions = (sum(getattr(one, name) for one in found.evidence) for name in ("held", "run"))
-    name = found.requirement.symbol.path
-    return RequirementRow(name, identifier, text, source, scenarios, held, executions, _verdict(found))
+    evidence = tuple(
+        ScenarioCell(
+            one.verifier.variant.definition.symbol.path, one.outcome, one.held, one.run, one.vacuous, one.stale
+        )
+        for one in found.evidence
+    )
+    return RequirementRow(found.requirement.symbol.path, identifier, text, source, evidence, _verdict(found))
 
 
 def _verdict(found: Coverage) -> str:
@@ -125,7 +162,7 @@ def read_table(file: Path, text: str) -> list[RequirementRow]:
     if "text" not in places or not {"name", "id"} & places.keys():
         listed = ", ".join(repr(name) for name in places) or "nothing"
         raise TableProblem(f"{file}:1:1: the first row needs the columns 'text' and 'id' (or 'name'); it has {listed}")
-    names = _Names()
+    names = Names()
     return [_read_row(file, places, row, names) for row in cells[1:] if any(cell for cell, _, _ in row)]
 
 
@@ -133,13 +170,21 @@ Cell = tuple[str, int, int]
 """The text of a cell with its line and column, from 1."""
 
 
-class _Names:
-    """Names of requirements that are not yet used; each with the line where it was read."""
+class Names:
+    """Names of requirements that are used already; each with the line where it was read."""
 
     def __init__(self) -> None:
         self.lines: dict[str, int] = {}
 
+    def free(self, name: str, line: int) -> str:
+        """Return a name and note it; empty if it is used, or no name of the language."""
+        if name in self.lines or not _NAME.fullmatch(name):
+            return ""
+        self.lines[name] = line
+        return name
+
     def made(self, identifier: str, line: int) -> str:
+        """Return a new name for an identifier of another tool."""
         name = _OTHER.sub("-", identifier).strip("-")
         name = name if _NAME.fullmatch(name) else f"R-{name}"
         free = next(one for one in chain([name], (f"{name}-{number}" for number in count(2))) if one not in self.lines)
@@ -147,7 +192,7 @@ class _Names:
         return free
 
 
-def _read_row(file: Path, places: Mapping[str, int], row: list[Cell], names: _Names) -> RequirementRow:
+def _read_row(file: Path, places: Mapping[str, int], row: list[Cell], names: Names) -> RequirementRow:
     _, line, _ = row[0]
 
     def cell(column: str) -> Cell:
