@@ -197,7 +197,7 @@ class Predicate:
     - ``duration``: of a predicate about the time between the events of ``from … until …``: ``evaluate`` is for plots.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
-    - ``synonyms``: words that users write for it. They are no form of it, but lead to it in the message on an error.
+    - ``synonyms``: words that users write for it; the message on such an error names the predicate.
     """
 
     name: str
@@ -294,9 +294,8 @@ class RobotModel:
     - ``mjcf``: a model file in the folder of the catalog file.
     - ``home``: the initial joint positions (rad).
     - ``velocity_limits`` (rad/s) and ``torque_limits`` (N m): the published limits of each arm joint.
-    - ``joints``, ``tool_site`` and ``gripper_actuator``: names in the model file.
+    - ``joints``, ``tool_site`` and ``gripper_actuator``: names in the model file; ``pads``: its gripping faces.
     - ``gripper_open`` and ``gripper_closed``: control values of the gripper's actuator.
-    - ``pads``: the geoms of the gripping faces.
     - ``mount``: the position of the base of the first such robot (m, world frame).
     - ``stroke``: the widest opening between the gripping faces, or the diameter of the suction cup (m).
     - ``source``: the publications from which the numbers are taken.

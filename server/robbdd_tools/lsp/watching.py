@@ -14,7 +14,7 @@ from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.source_documents import SUFFIXES, is_source
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RESULTS, RunStore
-from robbdd_tools.run.study_store import NAME as STUDY
+from robbdd_tools.run.study_schema import NAME as STUDY
 from robbdd_tools.syntax.parse import LANGUAGES
 
 if TYPE_CHECKING:

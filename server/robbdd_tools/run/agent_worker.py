@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
-from typing import NamedTuple
 
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.protocol.messages import (
@@ -32,7 +31,8 @@ def grace(limit: float) -> float:
     return min(GRACE, limit / 10)
 
 
-class Busy(NamedTuple):
+@dataclass(frozen=True, slots=True, order=True)
+class Busy:
     """The number of a process, the number of the scenario that it executes, and for how many s it has done so."""
 
     number: int

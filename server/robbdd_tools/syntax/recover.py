@@ -28,7 +28,7 @@ ALIKE = 0.6
 HOLE = "\u02ad"
 """Placeholder for a missing name: a letter for the grammar, but one that no alphabet uses."""
 NOTHING = 'pred("")'
-"""A predicate that states nothing; no rule checks it."""
+"""A predicate without content; no rule checks it."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
 _JOINING = re.compile(r"(?:\s|//[^\n]*\n)*(?:and|or)\b")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
