@@ -1,4 +1,4 @@
-"""``robbdd export``: write the traces of a stored run as bags of ROS 2."""
+"""``robbdd export``: write a stored run as bags of ROS 2, or as results for Allure Report."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from robbdd_tools.campaign.allure_results import write_allure
 from robbdd_tools.commands import OK
-from robbdd_tools.commands.output import print_line
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.workbench.bag_export import export_bags
-from robbdd_tools.workbench.stored import store_at
+from robbdd_tools.workbench.stored import find_run, store_at
 
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """The options of ``robbdd export``: the run, the folder of the bags, and their storage."""
+    """The options of ``robbdd export``: the run, the folder to write, and how bags are stored."""
 
     run: str
     output: Path
@@ -27,6 +28,21 @@ class ExportOptions:
 def export_run(options: ExportOptions) -> int:
     """Write the bags and print their folders. Return the exit code."""
     return report_problems(Outputs(), viewer=False, work=lambda: _export(options))
+
+
+def export_allure(options: ExportOptions) -> int:
+    """Write the results for Allure Report and print their number. Return the exit code."""
+    if options.mcap:
+        return fail("--mcap is a format of bags: leave it out, or write --ros2 instead of --allure")
+
+    def work() -> int:
+        count, problem = write_allure(find_run(options.run, store=options.store), options.output, options.names)
+        if problem:
+            print_note(f"there are no pictures: {problem}")
+        print_line(f"{count} result{'s' * (count != 1)} in {options.output}")
+        return OK
+
+    return report_problems(Outputs(), viewer=False, work=work)
 
 
 def _export(options: ExportOptions) -> int:

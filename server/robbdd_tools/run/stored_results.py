@@ -114,6 +114,20 @@ def finished_executions(database: Path, number: int) -> Mapping[int, float] | No
             return dict(connection.execute(query, (number,)).fetchall())
 
 
+def execution_ends(database: Path, number: int) -> Mapping[int, tuple[str, float]]:
+    """Map the number of each finished execution of a run to its end (ISO 8601) and its wall time in s.
+
+    It is empty if the database has no such run. Raises ``DatabaseProblem``.
+    """
+    with explained(database):
+        connection = read_database(database)
+        if connection is None:
+            return {}
+        with closing(connection):
+            query = "SELECT idx, ended, wall FROM execution WHERE run = ?"
+            return {index: (ended, wall) for index, ended, wall in connection.execute(query, (number,))}
+
+
 def read_results(database: Path, number: int, manifest: Manifest, *, live: bool = False) -> RunResults | None:
     """Return the results of a run, or ``None`` if the database has none. Raises ``DatabaseProblem``.
 
