@@ -34,12 +34,45 @@ class World(Protocol):
         ...
 
     @property
+    def joint_velocities(self) -> FloatArray:
+        """Velocities of the arm's joints, rad/s (m/s of sliding ones), shape (n,)."""
+        ...
+
+    @property
+    def joint_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper limits of the arm's joints, rad (m), shape (n,) each."""
+        ...
+
+    @property
+    def gravity(self) -> FloatArray:
+        """The acceleration of gravity (3,) m/s²."""
+        ...
+
+    @property
     def tool(self) -> tuple[FloatArray, FloatArray]:
         """Position (3,) m and rotation matrix (3, 3) of the tool."""
         ...
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
         """Position of an object's middle (3,) m, and its rotation matrix (3, 3); raises ``KeyError`` if unknown."""
+        ...
+
+    def velocity(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Velocity of an object's middle (3,) m/s, and of its rotation (3,) rad/s; raises ``KeyError`` if unknown."""
+        ...
+
+    def joints_of(self, name: str) -> FloatArray:
+        """Joint positions of another agent (n,) rad, or that of a thing that opens (1,) m or rad.
+
+        Raises ``KeyError`` for any other name.
+        """
+        ...
+
+    def force(self, first: str, second: str) -> float:
+        """The sum of the contact forces (N) between two objects or agents now; 0 between objects that lie still.
+
+        Raises an error in the kinematic world, which has no forces. For objects in a gripper, ask with the agent.
+        """
         ...
 
     def place(self, workspace: str) -> FloatArray:
@@ -50,10 +83,12 @@ class World(Protocol):
         """Whether the gripper holds an object."""
         ...
 
-    def solve(self, position: FloatArray, closing: float = 0.0) -> FloatArray:
+    def solve(self, position: FloatArray, closing: float = 0.0, rotation: FloatArray | None = None) -> FloatArray:
         """Joint positions (n,) rad that put the tool, pointing down, at a position (3,) m.
 
-        ``closing`` (rad) is the direction in which fingers close. Raises ``BehaviourFailed`` out of reach.
+        ``closing`` (rad) is the direction in which fingers close. With a ``rotation`` (3, 3), the tool has that one
+        instead: its columns are the tool's axes in the world frame, z out of the hand and y the closing direction.
+        Raises ``BehaviourFailed`` out of reach.
         """
         ...
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.api import GripperKind, ShapeKind
-from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.engine import TICK, mujoco
+from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import half_of, outline_of
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.momentary import velocity_between
 from robbdd_tools.world.owners import geom_owners, joint_of_part
 from robbdd_tools.world.simulation import Simulation
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.catalog.api import FloatArray, Shape
     from robbdd_tools.world.composition import World
+    from robbdd_tools.world.momentary import Velocity
     from robbdd_tools.world.robot import Robot
 
 NEAR = 0.005
@@ -94,6 +96,28 @@ class KinematicSimulation(Simulation):
         """Set where a mobile base is after the next tick."""
         assert robot.mobile is not None, "only mobile bases drive"
         self._bases[robot.name] = robot.mobile.positions_at(pose)
+
+    def velocity(self, name: str) -> Velocity:
+        """Return the velocity of an object's position (m/s) and rotation (rad/s) since the sample before."""
+        states = self.recorder.states
+        after = self.pose(name)
+        if len(states) < 2:
+            return np.zeros(3), np.zeros(3)
+        self.scratch.qpos[:] = states[-2]
+        mujoco.mj_kinematics(self.model, self.scratch)
+        body = self.scratch.body(name)
+        return velocity_between((body.xpos.copy(), body.xmat.reshape(3, 3).copy()), after, TICK)
+
+    def joint_velocities(self, robot: Robot) -> FloatArray:
+        """Return the velocities of an arm's joints (rad/s, shape (n,)) since the sample before."""
+        states = self.recorder.states
+        if len(states) < 2:
+            return np.zeros(len(robot.joints))
+        return (states[-1, robot.joints] - states[-2, robot.joints]) / TICK
+
+    def contact_force(self, first: str, second: str) -> float:
+        """Raises ``SimulationError``: this world has no forces."""
+        raise SimulationError(f"the kinematic world has no forces, so none between {first} and {second}")
 
     def targets(self, robot: Robot) -> FloatArray:
         """Return the joint positions (rad, shape (n,)) to which the arm moves."""

@@ -19,7 +19,8 @@ from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.holding import Grips
-from robbdd_tools.world.owners import joint_of_part
+from robbdd_tools.world.momentary import Velocity, force_between, velocity_of
+from robbdd_tools.world.owners import geom_owners, joint_of_part
 from robbdd_tools.world.recorder import Bodies, Recorder
 from robbdd_tools.world.robot import Robot
 from robbdd_tools.world.touch_forces import TouchForces
@@ -207,6 +208,33 @@ class Simulation:
         """Return position (3,) m and rotation matrix (3, 3) of an object in the world frame; raises ``KeyError``."""
         body = self.data.body(name)
         return body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+
+    def velocity(self, name: str) -> Velocity:
+        """Return the velocity of an object's position (m/s) and of its rotation (rad/s); raises ``KeyError``."""
+        return velocity_of(self.model, self.data, name)
+
+    def joint_velocities(self, robot: Robot) -> FloatArray:
+        """Return the velocities of an arm's joints, rad/s, shape (n,)."""
+        speeds: FloatArray = self._qvel[robot.speeds]
+        return speeds.copy()
+
+    def joint_of(self, name: str) -> float:
+        """Return the position (m, rad) of the joint of a thing that opens; raises ``KeyError`` if it has none."""
+        return float(self._qpos[self.model.joint(joint_of_part(name)).qposadr[0]])
+
+    @cached_property
+    def _owners(self) -> list[str]:
+        return geom_owners(self.model, self.robots)
+
+    def contact_force(self, first: str, second: str) -> float:
+        """Return the sum of the contact forces (N) of two elements in the last step."""
+        return force_between(self.model, self.data, self._owners, first, second)
+
+    @property
+    def gravity(self) -> FloatArray:
+        """The acceleration of gravity, m/s², world frame, shape (3,)."""
+        acceleration: FloatArray = self.model.opt.gravity
+        return acceleration.copy()
 
     def tool(self, robot: Robot) -> tuple[FloatArray, FloatArray]:
         """Return position (3,) m and rotation matrix (3, 3) of an arm's tool in the world frame."""

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.trace import EventStamp, Trace
     from robbdd_tools.world.composition import World
+    from robbdd_tools.world.momentary import Velocity
     from robbdd_tools.world.robot import Robot
 
 
@@ -16,8 +17,9 @@ class Simulator(Protocol):
 
     - set up: the constructor takes a ``World``; ``settle`` brings it to rest and starts the clock.
     - step: ``tick``.
-    - observe: ``pose``, ``tool``, ``holds``, ``joint_positions``, ``trace``, and ``seen`` as a robot with faults would.
-    - command: ``command``.
+    - observe: ``pose``, ``velocity``, ``tool``, ``holds``, ``joint_positions``, ``joint_velocities``, ``joint_of``,
+      ``contact_force``, ``gravity``, ``trace``, and ``seen`` as a robot with faults would.
+    - command: ``command``, and ``drive`` for mobile bases; ``targets`` is where an arm is going.
     - snapshot: ``state`` and ``restore``.
     """
 
@@ -48,6 +50,10 @@ class Simulator(Protocol):
         """Return position (3,) m and rotation matrix (3, 3) of an object; raises ``KeyError``."""
         ...
 
+    def velocity(self, name: str) -> Velocity:
+        """Return the velocity of an object's position (3,) m/s and rotation (3,) rad/s; raises ``KeyError``."""
+        ...
+
     def seen(self, name: str) -> tuple[FloatArray, FloatArray]:
         """Return the pose of an object as the robots perceive it, in the form of ``pose``."""
         ...
@@ -66,6 +72,31 @@ class Simulator(Protocol):
 
     def joint_positions(self, robot: Robot) -> FloatArray:
         """Return the positions of an arm's joints, rad, shape (n,)."""
+        ...
+
+    def joint_velocities(self, robot: Robot) -> FloatArray:
+        """Return the velocities of an arm's joints, rad/s, shape (n,)."""
+        ...
+
+    def joint_of(self, name: str) -> float:
+        """Return the position (m, rad) of the joint of a thing that opens; raises ``KeyError`` if it has none."""
+        ...
+
+    def contact_force(self, first: str, second: str) -> float:
+        """Return the sum of the contact forces (N) of two elements; raises ``SimulationError`` without physics."""
+        ...
+
+    @property
+    def gravity(self) -> FloatArray:
+        """The acceleration of gravity, m/s², world frame, shape (3,)."""
+        ...
+
+    def targets(self, robot: Robot) -> FloatArray:
+        """Return the joint positions (rad, shape (n,)) to which an arm moves."""
+        ...
+
+    def drive(self, robot: Robot, pose: FloatArray) -> None:
+        """Move a mobile base to a pose (x m, y m, yaw rad) within one tick, world frame."""
         ...
 
     def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from robbdd_tools.base.articulation import Opening
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.arm_kinematics import arm_of
@@ -55,6 +56,21 @@ class AgentWorld:
         return self._simulation.joint_positions(self._robot).copy()
 
     @property
+    def joint_velocities(self) -> FloatArray:
+        """Velocities of the arm's joints, rad/s."""
+        return self._simulation.joint_velocities(self._robot)
+
+    @property
+    def joint_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper limits of the arm's joints, rad."""
+        return self._arm.lower.copy(), self._arm.upper.copy()
+
+    @property
+    def gravity(self) -> FloatArray:
+        """The acceleration of gravity, m/s²."""
+        return self._simulation.gravity
+
+    @property
     def tool(self) -> tuple[FloatArray, FloatArray]:
         """Position (m) and rotation matrix of the tool."""
         return self._simulation.tool(self._robot)
@@ -62,6 +78,31 @@ class AgentWorld:
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
         """Return position (m) and rotation matrix of an object; raises ``KeyError``."""
         return self._simulation.seen(name)
+
+    def velocity(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return the velocity of an object (m/s, rad/s); raises ``KeyError``."""
+        self._known(name, self._simulation.world.cast.objects)
+        return self._simulation.velocity(name)
+
+    def joints_of(self, name: str) -> FloatArray:
+        """Return the joint positions of an agent or of a thing that opens (rad, m); raises ``KeyError``."""
+        if name in self._simulation.robots:
+            return self._simulation.joint_positions(self._simulation.robots[name]).copy()
+        opening = self._simulation.world.cast.openings.get(name)
+        if not isinstance(opening, Opening):
+            raise KeyError(f"'{name}' is no agent, and no thing that opens")
+        return np.array([self._simulation.joint_of(opening.part)])
+
+    def force(self, first: str, second: str) -> float:
+        """Return the contact forces (N) between two elements; raises ``KeyError``, and without physics, too."""
+        for name in (first, second):
+            self._known(name, (*self._simulation.world.cast.objects, *self._simulation.robots))
+        return self._simulation.contact_force(first, second)
+
+    @staticmethod
+    def _known(name: str, names: Iterable[str]) -> None:
+        if name not in names:
+            raise KeyError(f"there is no '{name}' in the scene; it has {', '.join(names)}")
 
     def place(self, workspace: str) -> FloatArray:
         """Return the centre (m) of a workspace's bottom; raises ``KeyError``."""
@@ -74,20 +115,38 @@ class AgentWorld:
         """Return whether the gripper holds an object."""
         return self._simulation.holds(self._robot.name, name)
 
-    def solve(self, position: FloatArray, closing: float = 0.0) -> FloatArray:
-        """Return joint positions (rad) for a tool position; raises ``BehaviourFailed``, ``ValueError``."""
+    def solve(self, position: FloatArray, closing: float = 0.0, rotation: FloatArray | None = None) -> FloatArray:
+        """Return joint positions (rad) for a tool pose; raises ``BehaviourFailed``, ``ValueError``."""
         place = np.asarray(position, dtype=float)
         if place.shape != (3,) or not np.all(np.isfinite(place)):
             raise ValueError(f"position must be 3 finite numbers, not {position!r:.200}")
         if not np.isfinite(closing):
             raise ValueError(f"closing must be a finite number, not {closing!r}")
-        where, rotation = frame_of(tool_pose(self._robot.base, place, closing))
+        where, down = frame_of(tool_pose(self._robot.base, place, closing))
+        wanted = down if rotation is None else self._in_base(rotation)
         try:
-            return self._arm.solve(self._arm.towards(where), where, rotation)
+            return next(self._arm.solutions(where, wanted))
         except BehaviourError as error:
+            if rotation is not None and (found := self._from_here(where, wanted)) is not None:
+                return found
             raise BehaviourFailed(
                 f"{self._robot.name} cannot reach {np.round(position, 3).tolist()}: {error}"
             ) from error
+
+    def _in_base(self, rotation: FloatArray) -> FloatArray:
+        """Return the rotation of the tool in the frame of the arm's base; raises ``ValueError``."""
+        turn = np.asarray(rotation, dtype=float)
+        if turn.shape != (3, 3) or not np.allclose(turn.T @ turn, np.eye(3), atol=1e-3) or np.linalg.det(turn) < 0.0:
+            raise ValueError(f"rotation must be a rotation matrix of shape (3, 3), not {rotation!r:.200}")
+        c, s = np.cos(self._robot.base.yaw), np.sin(self._robot.base.yaw)
+        return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ turn
+
+    def _from_here(self, place: FloatArray, rotation: FloatArray) -> FloatArray | None:
+        """Return a solution near the present posture: for tools that do not point down, home may be far away."""
+        try:
+            return self._arm.solve(self.joints, place, rotation)
+        except BehaviourError:
+            return None
 
     def command(self, joints: FloatArray, opening: float) -> None:
         """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for invalid values."""
