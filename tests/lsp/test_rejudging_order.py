@@ -49,7 +49,7 @@ class Server:
     def importers(self, _: str) -> list[str]:
         return []
 
-    async def analyse(self, work: Callable[[Any], Any], **_: object) -> Any:
+    async def analyse(self, work: Callable[[Any], Any], *_: object) -> Any:
         return work(self)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
