@@ -13,7 +13,13 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.policy import Policy, Rule
 from robbdd_tools.monitor.time import After
 from robbdd_tools.protocol.clauses import BehaviourCall, Fluent
-from robbdd_tools.protocol.spec_changes import change_of, edited_clauses
+from robbdd_tools.protocol.spec_changes import (
+    change_of,
+    content_change,
+    edited_clauses,
+    seed_change,
+    without_repetition,
+)
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 
 CATALOG = load_catalog()
@@ -84,6 +90,28 @@ def test_a_change_beyond_clauses_is_named(spec: ScenarioSpec, what: str) -> None
 )
 def test_clauses_positions_and_numbers_leave_the_trace_as_evidence(spec: ScenarioSpec) -> None:
     assert change_of(spec, STORED) == ""
+
+
+def test_repetitions_are_equal_without_their_number_and_seed() -> None:
+    other = replace(STORED, feature="g.feature", line=7, name="s 2", seed=8, repetition=2)
+    assert without_repetition(other) == without_repetition(STORED)
+    assert content_change(other, STORED) == ""
+    assert seed_change(other, STORED) == change_of(other, STORED) != ""
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        replace(STORED, scene=replace(STORED.scene, places={"e:cube": "e:bin"})),
+        with_execution(timeout=5.0),
+        replace(STORED, clauses=(act(), goal(2.0))),
+        replace(STORED, clauses=(act("e:bin"), goal())),
+        replace(STORED, tree=None),
+        replace(STORED, variation=2),
+    ],
+)
+def test_repetitions_of_another_scenario_are_not_equal(spec: ScenarioSpec) -> None:
+    assert without_repetition(spec) != without_repetition(STORED)
 
 
 def test_a_run_of_an_earlier_version_is_compared_by_sentences() -> None:

@@ -22,12 +22,10 @@ def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) 
 
     The frames are given by their origins (n, 3) and orientations as unit quaternions (w, x, y, z) (n, 4).
     """
-    import numpy as np
-
     relative = points - origin
     axis = -orientation[:, 1:]
-    twice = 2.0 * np.cross(axis, relative)
-    return relative + orientation[:, :1] * twice + np.cross(axis, twice)
+    twice = 2.0 * cross(axis, relative)
+    return relative + orientation[:, :1] * twice + cross(axis, twice)
 
 
 def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> FloatArray:
@@ -36,8 +34,23 @@ def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> 
 
     relative = np.tile(np.asarray(point), (len(origin), 1))
     axis = orientation[:, 1:]
-    twice = 2.0 * np.cross(axis, relative)
-    return origin + relative + orientation[:, :1] * twice + np.cross(axis, twice)
+    twice = 2.0 * cross(axis, relative)
+    return origin + relative + orientation[:, :1] * twice + cross(axis, twice)
+
+
+def cross(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Return the cross products of vectors (n, 3).
+
+    The result has the bits of ``numpy.cross``, which spends most of its time on general shapes: half of the time that
+    is needed to judge where an object is.
+    """
+    import numpy as np
+
+    product = np.empty(np.broadcast_shapes(first.shape, second.shape))
+    for axis, (one, other) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(first[:, one], second[:, other], out=product[:, axis])
+        product[:, axis] -= first[:, other] * second[:, one]
+    return product
 
 
 def inside_margin(

@@ -38,8 +38,7 @@ from robbdd_tools.workbench.trace_judge import JudgeEnded, TraceJudge
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import ClauseJudged
     from robbdd_tools.protocol.specs import Manifest
-    from robbdd_tools.run.readable import readable
-from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.run.store import StoredRun
 
 _LOG = logging.getLogger(__name__)
 GONE = f"the run is gone: {AGAIN}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.monitor.time import occurrences
@@ -28,10 +28,27 @@ def change_of(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
     Only data is compared, so edits of comments and layout change nothing. The two scenarios have the same variant,
     values, execution and repetition.
     """
+    return content_change(spec, stored) or seed_change(spec, stored)
+
+
+def content_change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
+    """Return the part of ``change_of`` that is the same for all repetitions of a scenario."""
     for name, same in _comparisons(spec, stored):
         if not same:
             return CHANGED.format(name)
     return ""
+
+
+def seed_change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
+    """Return the part of ``change_of`` that concerns the seed."""
+    # A scenario whose number changed has another seed, but its trace still shows an execution of it.
+    same = spec.variation != stored.variation or spec.seed == stored.seed
+    return "" if same else CHANGED.format("the seed")
+
+
+def without_repetition(spec: ScenarioSpec) -> ScenarioSpec:
+    """Return a scenario without its number, its seed and its place: equal for all repetitions of it."""
+    return replace(spec, feature="", line=0, name="", seed=0, repetition=1)
 
 
 def edited_clauses(spec: ScenarioSpec, stored: ScenarioSpec) -> tuple[ClauseSpec, ...]:
@@ -55,8 +72,6 @@ def _comparisons(spec: ScenarioSpec, stored: ScenarioSpec) -> Iterator[tuple[str
     if now is not None and then is not None:
         yield "the implementation of the behaviour", _bare(now.implementation) == _bare(then.implementation)
         yield "the time limit", now.timeout == then.timeout
-    # A scenario whose number changed has another seed, but its trace still shows an execution of it.
-    yield "the seed", spec.variation != stored.variation or spec.seed == stored.seed
 
 
 def _same_behaviours(spec: ScenarioSpec, stored: ScenarioSpec) -> bool:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.step_files import may_define
 from robbdd_tools.gherkin.select import SelectionError
-from robbdd_tools.protocol.spec_changes import AGAIN, change_of, edited_clauses
+from robbdd_tools.protocol.spec_changes import AGAIN, content_change, edited_clauses, seed_change, without_repetition
 from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.used_files import changed
 from robbdd_tools.workbench.judging import selection_of
@@ -59,18 +59,51 @@ def edited_executions(
     if not reason and not record.models and file.digest == record.digest:
         return
     specs = {} if reason else _specs_now(place, manifest, file, wanted.values())
+    comparison = Comparison(file)
     for index, stored in wanted.items():
         spec = specs.get(scenario_key(stored))
-        why = reason or (GONE if spec is None else change_of(spec, stored))
-        if why or spec is None:
+        edits = None if reason or spec is None else comparison.edits(spec, stored)
+        if spec is None or edits is None:
+            yield EditedExecution(index, stored, None, reason or GONE)
+        elif why := edits.change or seed_change(spec, stored):
             yield EditedExecution(index, stored, None, why)
-            continue
-        edited = edited_clauses(spec, stored)
-        reasons = [(clause, _refusal(clause, spec, file)) for clause in edited]
-        if reasons:
-            judged = replace(spec, clauses=tuple(clause for clause, refusal in reasons if not refusal))
-            refused = tuple((clause, refusal) for clause, refusal in reasons if refusal)
-            yield EditedExecution(index, stored, judged, refused=refused)
+        elif edits.judged or edits.refused:
+            yield EditedExecution(index, stored, replace(spec, clauses=edits.judged), refused=edits.refused)
+
+
+@dataclass(frozen=True, slots=True)
+class Edits:
+    """The edits of a scenario since its execution: a ``change`` by which the trace is no evidence, or clauses."""
+
+    change: str
+    judged: tuple[ClauseSpec, ...] = ()
+    refused: tuple[tuple[ClauseSpec, str], ...] = ()
+
+
+class Comparison:
+    """Compares scenarios with their stored executions; repetitions of a scenario, which have the same edits, once."""
+
+    def __init__(self, file: ModelFile) -> None:
+        self._file = file
+        self._known: dict[tuple[str, int, str], tuple[ScenarioSpec, ScenarioSpec, Edits]] = {}
+
+    def edits(self, spec: ScenarioSpec, stored: ScenarioSpec) -> Edits:
+        """Return the edits of a scenario, except those of its seed."""
+        execution = "" if spec.execution is None else spec.execution.iri
+        key = (spec.variant, spec.variation, execution)
+        now, then = without_repetition(spec), without_repetition(stored)
+        known = self._known.get(key)
+        if known is None or (now, then) != known[:2]:
+            known = self._known[key] = (now, then, self._found(spec, stored))
+        return known[2]
+
+    def _found(self, spec: ScenarioSpec, stored: ScenarioSpec) -> Edits:
+        change = content_change(spec, stored)
+        if change:
+            return Edits(change)
+        reasons = [(clause, _refusal(clause, spec, self._file)) for clause in edited_clauses(spec, stored)]
+        judged = tuple(clause for clause, refusal in reasons if not refusal)
+        return Edits("", judged, tuple((clause, refusal) for clause, refusal in reasons if refusal))
 
 
 def _specs_now(
