@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -53,12 +54,11 @@ def same(shown: str, printed: str) -> bool:
     return all(float(a) == pytest.approx(float(b), rel=TOLERANCE, abs=1e-4) for a, b in pairs)
 
 
-@pytest.mark.physics
-@pytest.mark.usefixtures("forks")
-def test_the_tutorial_does_what_it_says(tmp_path: Path) -> None:
-    executed: list[str] = []
-    for block in BLOCK.finditer(PAGE.read_text(encoding="utf-8")):
-        path, text = tmp_path / (block["file"] or "."), block["text"]
+def follow(page: Path, folder: Path) -> set[str]:
+    """Write, edit and execute what a page says, and return the commands that it executed."""
+    executed: set[str] = set()
+    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+        path, text = folder / (block["file"] or "."), block["text"]
         if block["kind"] == "robbdd":
             path.parent.mkdir(exist_ok=True)
             path.write_text(text, encoding="utf-8")
@@ -67,10 +67,18 @@ def test_the_tutorial_does_what_it_says(tmp_path: Path) -> None:
         else:
             for (program, *arguments), shown in commands(text):
                 assert program == "robbdd"
-                done = subprocess.run([*ROBBDD, *arguments], cwd=tmp_path, capture_output=True, text=True)
+                done = subprocess.run([*ROBBDD, *arguments], cwd=folder, capture_output=True, text=True)
                 assert matches(shown, done.stdout.splitlines()), (arguments, done.stdout, done.stderr)
-                executed.append(arguments[0])
-    assert set(executed) == {"check", "run", "report", "judge"}
+                executed.add(arguments[0])
+    return executed
+
+
+@pytest.mark.physics
+@pytest.mark.usefixtures("forks")
+def test_the_tutorial_and_the_page_of_an_own_arm_do_what_they_say(tmp_path: Path) -> None:
+    assert follow(PAGE, tmp_path) == {"check", "run", "report", "judge"}
+    shutil.copy(DOCS / "robots" / "rhea.urdf", tmp_path / "cell")
+    assert follow(DOCS / "robots.md", tmp_path) == {"view", "check", "run"}
 
 
 def test_a_line_with_another_verdict_or_number_is_noticed() -> None:

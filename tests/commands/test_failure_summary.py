@@ -42,3 +42,12 @@ def test_a_long_list_of_causes_is_cut() -> None:
     lines = [words for _, words in failure_summary(every)]
     assert len(lines) == MAX_CAUSES + 1
     assert lines[-1] == "… and 2 more causes"
+    assert [words for _, words in failure_summary(every[:-1])][-1] == "… and 1 more cause"
+
+
+def test_reasons_that_differ_in_measured_numbers_only_are_one_cause() -> None:
+    holds = ("holds", 0.1, "", "")
+    every = [scenario(index, ("violated", -0.1 * index, f"it took {index}.25 s", ""), holds) for index in (8, 9)]
+    assert [words for _, words in failure_summary(every)] == [
+        "✗ c5 in 2 scenarios, worst: it took 9.25 s (violated by −900 mm)"
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 MAX_CAUSES = 5
 """Maximum number of causes that are listed."""
+_MEASURED = re.compile(r"\d+\.\d+")
 
 
 def failure_summary(
@@ -26,6 +28,7 @@ def failure_summary(
     """Return a line for each cause of failures, the most frequent first: its clause, its reason and its number.
 
     Clauses that are unknown only because of another one do not count. The worst margin represents all scenarios.
+    Reasons that differ only in measured numbers ("it took 8.14 s") are one cause.
     ``errors`` maps the faults in users' code that have been printed to their numbers, which take the place of reasons.
     """
     groups: dict[tuple[Outcome, str, str], list[tuple[ClauseSpec, ClauseJudged]]] = {}
@@ -34,13 +37,13 @@ def failure_summary(
             number = (errors or {}).get(judged.fault)
             if number is not None:
                 judged = replace(judged, reason=f"no evidence, because of error {number}")
-            groups.setdefault((Outcome(judged.verdict), clause_title(clause), judged.reason), []).append(
-                (clause, judged)
-            )
+            reason = _MEASURED.sub("", judged.reason)
+            groups.setdefault((Outcome(judged.verdict), clause_title(clause), reason), []).append((clause, judged))
     found = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0][0] is not Outcome.VIOLATED))
     lines = [(outcome, _line(outcome, name, failures)) for (outcome, name, _), failures in found[:MAX_CAUSES]]
     if len(found) > MAX_CAUSES:
-        lines.append((Outcome.UNKNOWN, f"… and {len(found) - MAX_CAUSES} more causes"))
+        more = len(found) - MAX_CAUSES
+        lines.append((Outcome.UNKNOWN, f"… and {more} more cause{'s' if more > 1 else ''}"))
     return lines
 
 
