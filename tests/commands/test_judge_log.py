@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from kit import EXAMPLES
-from logs.bags import ROS2, Message, detected, goals, transform, write
+from logs.bags import ROS2, Message, detected, goals, pose, transform, write
 from logs.drives import ONE, clauses, drive, judged, robbdd, verdicts
 
 pytestmark = pytest.mark.physics
@@ -300,3 +300,16 @@ def test_numbers_on_a_topic_report_events(models: Path, tmp_path: Path) -> None:
         done = robbdd(models, "judge", str(tmp_path / "drive"), "pickplace.bdd", "--no-store", *ONE, "--event", stated)
         assert done.returncode == 2
         assert words in done.stderr
+
+
+def test_a_goal_is_no_evidence_of_where_a_thing_is(models: Path, tmp_path: Path) -> None:
+    """Only the place to which the cube shall be brought is in the log: it lies in the bin from the first second on."""
+    without = drive(cube="unknown_thing")
+    goal = [pose("/goal/cube0", (0.55, 0.3, 0.86), stamp=0.01 + tick / 10) for tick in range(100)]
+    found, remarks = judged(models, tmp_path, [*without, *goal])
+    assert verdicts(found)["at-goal"] == "unknown"
+    assert "'goal/cube0' may be where env:cube0 shall be, not where it is, so it is not used" in remarks
+    seen = [pose("/camera/cube0", (0.55, 0.3, 0.86), stamp=0.01 + tick / 10) for tick in range(100)]
+    found, remarks = judged(models, tmp_path, [*without, *goal, *seen])
+    assert verdicts(found)["at-goal"] == "holds"
+    assert "env:cube0 is the frame 'camera/cube0'" in remarks

@@ -90,3 +90,20 @@ def test_a_base_is_no_tool_unless_it_is_stated(base: str) -> None:
     assert tool_frame_of("env:panda", ["map", base], {"env:panda": base}) == base
     assert tool_frame_of("env:panda", ["map", base, "panda"], {}) == "panda"
     assert tool_frame_of("env:panda", ["map", "panda/tool0"], {}) == "panda/tool0"
+
+
+@pytest.mark.parametrize(
+    "planned", ["goal/cup1", "cup1/goal_pose", "arm/target/cup-1", "desired_poses/cup_1", "cup1/cmd"]
+)
+def test_a_place_that_is_planned_is_not_where_a_thing_is(planned: str) -> None:
+    with pytest.raises(FramesProblem) as caught:
+        frame_of("env:cup1", ["map", planned], {})
+    words = f"'{planned}' may be where env:cup1 shall be, not where it is, so it is not used"
+    assert str(caught.value) == f"{words}; if it was measured, name it with --frame cup1=FRAME"
+    assert frame_of("env:cup1", ["map", planned, "camera/cup1"], {}) == "camera/cup1"
+    assert frame_of("env:cup1", ["map", planned], {"cup1": planned}) == planned
+
+
+def test_a_thing_may_be_called_by_such_a_word() -> None:
+    assert frame_of("env:target_bin", ["map", "cell/target_bin", "goal/target_bin"], {}) == "cell/target_bin"
+    assert frame_of("env:goal", ["map", "goal"], {}) == "goal"

@@ -67,7 +67,9 @@ class Frames:
         for element in (*cast.objects, *cast.agents):
             try:
                 found = tool_frame_of if element in cast.agents else frame_of
-                self.of[element] = found(element, contents.tracks, stated)
+                self.of[element] = frame = found(element, contents.tracks, stated)
+                if {element, local_name(element)}.isdisjoint(stated) and "/" in frame:
+                    remarks.append(f"{element} is the frame '{frame}'")
             except FramesProblem as problem:
                 problems[element] = str(problem)
         asked = {agent for agent in jointed if agent not in self.of}

@@ -22,6 +22,10 @@ GROUPS = (OTHERS, "angle", "speed")
 BASES = frozenset({"base", "baselink", "basefootprint", "odom", "map", "world", "root"})
 """Usual names of frames that are never a tool, without separators."""
 FIRST_LINK = "link0"
+INTENDED = frozenset(
+    ("goal", "target", "desired", "setpoint", "command", "commanded", "cmd", "plan", "planned", "reference", "expected")
+)
+"""Words in the names of topics and frames that are planned and not measured."""
 _SEPARATORS = re.compile(r"[\s_.-]+")
 
 
@@ -80,8 +84,8 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
     """Return the frame of an element (CURIE) among the frames of a log.
 
     ``stated`` maps elements (CURIE or local name) to frames. Without an entry, the frame has the name of the element,
-    or it has this name as a part of its path (``cell/cube1``). Case and separators are ignored. Raises
-    ``FramesProblem``.
+    or it has this name as a part of its path (``cell/cube1``), unless the path says that the place is only planned
+    (``goal/cube1``). Case and separators are ignored. Raises ``FramesProblem``.
     """
     known = sorted(frames)
     name = local_name(element)
@@ -92,12 +96,23 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
             return wanted
         raise FramesProblem(f"the log has no frame '{wanted}' for {element}{_nearest(wanted, known)}")
     exact = [frame for frame in known if plain_word(frame) == plain_word(name)]
-    found = exact or [frame for frame in known if plain_word(name) in map(plain_word, frame.split("/"))]
+    named = exact or [frame for frame in known if plain_word(name) in map(plain_word, frame.split("/"))]
+    found = [frame for frame in named if not _is_intended(frame, name)]
     if len(found) == 1:
         return found[0]
+    hint = f"name it with --frame {name}=FRAME"
     if found:
         raise FramesProblem(f"several frames fit {element}: {', '.join(found)}; choose with --frame {name}=FRAME")
-    raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; name it with --frame {name}=FRAME")
+    if named:
+        words = f"'{named[0]}' may be where {element} shall be, not where it is"
+        raise FramesProblem(f"{words}, so it is not used; if it was measured, {hint}")
+    raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; {hint}")
+
+
+def _is_intended(frame: str, name: str) -> bool:
+    """Return whether a frame is planned and not measured, by the words of its path beside the name of an element."""
+    others = [part for part in frame.split("/") if plain_word(part) != plain_word(name)]
+    return not INTENDED.isdisjoint(word for part in others for word in _SEPARATORS.split(part.casefold()))
 
 
 def tool_frame_of(agent: str, frames: Iterable[str], stated: Mapping[str, str]) -> str:
