@@ -162,6 +162,11 @@ def test_a_stored_judgement_keeps_its_uncertainty(models: Path, tmp_path: Path) 
     ("option", "value", "words"),
     [
         ("--uncertainty", "cub0=3 mm", "the scene has no element 'cub0'; nearest: cube0"),
+        (
+            "--world",
+            "mapp",
+            "the log has no frame 'mapp' for --world; it has: bin_left, bin_right, cube0, map",
+        ),
         ("--frame", "bin_lef=tray", "the scene has no element 'bin_lef'; nearest: bin_left"),
         ("--uncertainty", "3", "'3' is no uncertainty: write '3 mm'"),
         ("--uncertainty", "cube0=3 deg", "'cube0=3 deg' is no uncertainty"),

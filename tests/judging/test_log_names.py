@@ -64,7 +64,15 @@ def test_a_text_reports_an_event_by_its_name_or_its_emitters(text: str) -> None:
 
 
 def test_a_longer_text_reports_nothing() -> None:
-    texts = [TextStamp("/log", "waiting for pick-end", 1.0), TextStamp("/log", "", 2.0)]
+    lines = (
+        "waiting for pick-end",
+        "",
+        "waiting for: pick-end",
+        "ERROR: pick-end",
+        "next/state: pick-end",
+        "a b/pick-end",
+    )
+    texts = [TextStamp("/log", line, float(time)) for time, line in enumerate(lines)]
     assert occurrences_of("ex:evt-pick-end", "pick-end", texts) == []
 
 

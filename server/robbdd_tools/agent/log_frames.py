@@ -11,6 +11,7 @@ import numpy as np
 from robbdd_tools.catalog.base_frames import BASE_FRAMES
 from robbdd_tools.judging.log_names import (
     FramesProblem,
+    NoElement,
     base_frame_of,
     elements_of,
     frame_of,
@@ -37,6 +38,7 @@ Poses = tuple["FloatArray", "FloatArray"]
 """Positions (n, 3) m in the frame of the world and orientations (n, 4), w first; NaN where unobserved."""
 NAME_WORLD = "name the frame of the world with --world FRAME"
 WORLD = "world"
+MAX_LISTED = 8
 CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
@@ -79,7 +81,7 @@ class Frames:
             if used and (element not in jointed or element in stated):
                 remarks.append(problem)
         self._stated_world = bool(request.world)
-        self._world = request.world.lstrip("/") or self._root()
+        self._world = _stated_world(request.world, self._tracks) or self._root()
         self._anchor()
 
     def observed(self) -> list[FloatArray]:
@@ -230,6 +232,14 @@ class Frames:
 def _tilts(cast: Cast, agent: str, count: int) -> FloatArray:
     """Return the rotation of an agent's base from its upright one ``count`` times, quaternions, shape (count, 4)."""
     return np.tile(cast.agents[agent].tilt, (count, 1))
+
+
+def _stated_world(stated: str, tracks: Mapping[str, Track]) -> str:
+    """Return the stated frame of the world, empty if none is. Raises ``NoElement`` if the log has no such frame."""
+    world, known = stated.lstrip("/"), {*tracks, *(track.parent for track in tracks.values())}
+    if world and known and world not in known:
+        raise NoElement(f"the log has no frame '{world}' for --world; it has: {', '.join(sorted(known)[:MAX_LISTED])}")
+    return world
 
 
 def _fixed(pose: Pose, count: int) -> Poses:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.catalog.coordination import each_emitter
 from robbdd_tools.judging.log_names import occurrences_of
 from robbdd_tools.judging.scenario_clauses import iteration_of, statement_of
 from robbdd_tools.protocol.clauses import BehaviourCall
@@ -45,5 +46,5 @@ def check_one_execution(spec: ScenarioSpec, texts: Sequence[TextStamp]) -> None:
 
 
 def _times(spec: ScenarioSpec, emitter: str, texts: Sequence[TextStamp]) -> list[float]:
-    names = [event for event, source in spec.events.items() if source == emitter] or [emitter]
+    names = [event for event, source in spec.events.items() if emitter in each_emitter(source)] or [emitter]
     return sorted({time for name in names for time in occurrences_of(name, emitter, texts)})

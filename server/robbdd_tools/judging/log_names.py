@@ -26,6 +26,8 @@ INTENDED = frozenset(
     ("goal", "target", "desired", "setpoint", "command", "commanded", "cmd", "plan", "planned", "reference", "expected")
 )
 """Words in the names of topics and frames that are planned and not measured."""
+_SENTENCE = re.compile(r".*\s.*[#/:]|.*[#/:]\s", re.DOTALL)
+"""A text that is no CURIE and no IRI, although it has one of their separators."""
 _SEPARATORS = re.compile(r"[\s_.-]+")
 
 
@@ -61,7 +63,7 @@ def elements_of(stated: Mapping[str, V], elements: Iterable[str]) -> dict[str, V
 def check_events(stated: Iterable[str], spec: ScenarioSpec) -> None:
     """Raise ``NoElement`` if a name is neither an event of a scenario nor one of its behaviour."""
     names = [local_name(event) for event in spec.events]
-    known = [*names, *dict.fromkeys(spec.events.values())]
+    known = [*names, *(one for source in dict.fromkeys(spec.events.values()) for one in each_emitter(source))]
     for name in stated:
         if name not in spec.events and inner_event(name, known) is None:
             raise NoElement(f"the scenario has no event '{name}'{_nearest(name, sorted(names))}")
@@ -152,10 +154,11 @@ def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list
     """Return the times (s) at which a log reports an event (CURIE), in order.
 
     A text reports it by the name of the event or of one that its ``emitter`` states, with the usual decorations
-    (``evt-pick-end``).
+    (``evt-pick-end``). It may be a CURIE or an IRI, but a sentence such as ``waiting for: pick-end`` reports nothing.
     """
     names = [local_name(event), *each_emitter(emitter)]
-    return [one.time for one in texts if one.text == event or inner_event(one.text.strip(), names) is not None]
+    words = [(one.time, one.text.strip()) for one in texts]
+    return [time for time, word in words if not _SENTENCE.match(word) and inner_event(word, names) is not None]
 
 
 def plain_word(name: str) -> str:
