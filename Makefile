@@ -53,6 +53,10 @@ study: $(READY)
 	$(BIN)/robbdd study outcomes examples/study/paper.study --by robot,range,scale --store build/study --plot build/study/study-outcomes.svg
 	$(BIN)/robbdd study margins examples/study/paper.study --clause speed --by robot --store build/study --plot build/study/study-speed.svg
 	$(BIN)/robbdd study outcomes examples/study/planned.study --by robot,range,scale --store build/study --plot build/study/study-planned.svg
+	$(BIN)/robbdd study margins examples/study/planned.study --clause speed --by robot --store build/study --plot build/study/study-planned-speed.svg
+	$(BIN)/robbdd compare examples/study/paper.study examples/study/planned.study --store build/study --gate 'no clause worse than 2 points' \
+		--html build/study/compared.html --again 10 || [ $$? -ne 2 ]
+	$(BIN)/robbdd report examples/study/paper.study --store build/study --again 10 -o build/study/paper.html
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,travel --store build/study
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,speed --store build/study
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,friction --store build/study
