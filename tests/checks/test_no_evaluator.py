@@ -85,3 +85,23 @@ def test_a_text_clause_gets_a_name_for_its_policy() -> None:
     assert "for <fetch.it-is-up>" in case.project.texts()["file:///fixture/main.bddx"][1]
     errors = [one for one in all_diagnostics(case.snapshot, "file:///fixture/main.bddx") if one.severity == 1]
     assert errors == []
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("pred('{a} is at rest', a=<part>)", "<part> is at rest"),
+        ("pred('{a} is at rest', a=<parts.bolt>)", "<parts.bolt> is at rest"),
+        ("pred('{a} moves slower than {v}', a=<robot>, v=0.25 m/s)", "<robot> moves slower than 0.25 m/s"),
+        ("pred('{a} moves slower than {v}', a=<robot>, v=0.25)", None),
+        ("pred('{a} moves slower than {v}', a=<robot>, v='slow')", None),
+        ("pred('{a} is at rest', b=<part>)", None),
+    ],
+)
+def test_a_text_that_says_a_phrase_with_these_values_is_judged_by_it(text: str, written: str | None) -> None:
+    case = fixture(MODEL.replace("in-tray: holds(<part> is located at <goal>", f"in-tray: holds({text}"))
+    found = fast_diagnostics(case.snapshot, case.uri)
+    assert ([] if written is None else [f"Write '{written}'"]) == [
+        fix.title for entry in found if entry.code == "catalog-phrase" for fix in entry.fixes
+    ]
+    assert any(entry.code == CODE for entry in found) == (written is None)

@@ -75,15 +75,23 @@ def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
 
 
 def said_by(clause: FreeClause) -> tuple[Predicate, str] | None:
-    """Return the predicate whose phrase a clause's text says, and the phrase with the clause's variables."""
+    """Return the predicate whose phrase a clause's text says, and the phrase with the clause's values."""
     if not isinstance(clause, tree.Fluent) or not isinstance(clause.predicate, tree.TextPredicate):
         return None
-    variables = {one.name.text: one.value.path for one in clause.predicate.arguments}
-    found = predicate_in_text(clause.predicate.template.value, variables)
+    values: dict[str, str] = {}
+    for one in clause.predicate.arguments:
+        match one.value:
+            case tree.Ref(path=path):
+                values[one.name.text] = f"<{path}>"
+            case tree.Quantity(text=text):
+                values[one.name.text] = text
+            case _:
+                pass  # No slot of the phrases that a text may say takes a plain number or a string.
+    found = predicate_in_text(clause.predicate.template.value, values)
     if found is None:
         return None
     predicate, placeholders = found
-    return predicate, phrase_with(predicate, {slot: f"<{variables[name]}>" for slot, name in placeholders.items()})
+    return predicate, phrase_with(predicate, {slot: values[name] for slot, name in placeholders.items()})
 
 
 def text_of(clause: FreeClause) -> tree.Text:

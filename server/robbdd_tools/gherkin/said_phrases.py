@@ -29,7 +29,7 @@ def said_phrase(
     cells: dict[str, Cell] = {}
     for slot in predicate.slots:
         term = clause.arguments[placeholders[slot.name]]
-        value = values.get(term, term)
+        value = values.get(term, term) if isinstance(term, Iri) else term
         # The elements of an *any of* are words, so their kinds are not known.
         if isinstance(value, AnyOf) or not _fits(model, slot, value):
             return None
