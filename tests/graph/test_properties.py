@@ -16,6 +16,7 @@ from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.graph.property_facts import properties_by_element
 from robbdd_tools.graph.rdf.serialize import parse
 from robbdd_tools.graph.rdf.vocabulary import QUANTITY
+from robbdd_tools.graph.read.acceptance import read_model
 
 ENV = "https://example.org/env/"
 STATED = (
@@ -142,3 +143,21 @@ def test_names_and_words_have_colours() -> None:
     colours = {text[one.span.start : one.span.end]: one.concept for one in semantic_tokens(case.snapshot, case.uri)}
     assert {colours[name] for name in ("count", "of", "scene")} == {"property"}
     assert (colours["red"], colours["true"]) == ("string", "keyword")
+
+
+def test_a_graph_that_only_the_executable_scene_imports_states_correct_places() -> None:
+    turtle = f"@prefix env: <{ENV}> .\nenv:tray_ws <https://robbdd.org/metamodels/workbench#correct-for> env:bolt .\n"
+    execution = """//- main.bddx
+import "main.bdd"
+import "lab.scenex"
+ns x = 'https://example.org/x/'
+bhv impl (ns=x) built-in { catalog "pick-place" }
+Scenario Exec (ns=x) once { variant: <fetching.bench-to-tray> scene inst: <models> bhv: <built-in> }
+//- lab.scenex
+import "lab.scene"
+import "p.ttl"
+ns s = 'https://example.org/s/'
+scene inst (ns=s) models { scene: <bench_scene> }
+"""
+    graph = built(f"{execution}//- p.ttl\n{turtle}//- main.bdd\n{MODEL}//- lab.scene\n{SCENE}").graph
+    assert read_model(graph).correct_places == {f"{ENV}bolt": (f"{ENV}tray_ws",)}
