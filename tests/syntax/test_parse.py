@@ -90,7 +90,7 @@ def test_and_is_not_mixed_with_or_in_one_parenthesis(one: str, other: str, layou
 
 
 def test_keywords_need_a_boundary() -> None:
-    assert faults(template("a: holds(<x> islocated at <y>, before <e>)"))[0][0] == "islocated"
+    assert faults(template("a: holds(<x> islocated at <y>, before <e>)"))[0][0] == "islocated at <y>"
 
 
 def test_a_table_row_may_break_over_lines() -> None:
