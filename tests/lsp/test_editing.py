@@ -48,6 +48,19 @@ async def test_clauses_are_extracted_to_a_copy_of_a_shared_template(editor: Edit
     assert texts.count("pick-place-2.goal") == 1
 
 
+async def test_a_literal_is_extracted_to_a_variable(editor: Editor) -> None:
+    clause = "fast: holds(<robot> has config ee_speed = 0.5, before <evt-start>)"
+    start = editor.text.index("Given:") + len("Given:")
+    editor.open(editor.text[:start] + f" {clause} " + editor.text[start:])
+    found = await actions(editor, "0.5, before", ["refactor.extract"])
+    edit = found["Turn 0.5 into the variable 'ee_speed'"].edit
+    assert edit is not None
+    assert edit.changes is not None
+    texts = [change.new_text for change in edit.changes[editor.uri]]
+    assert "<ee_speed>" in texts
+    assert sum("{ 0.5 }" in text for text in texts) == 1
+
+
 async def test_a_scene_is_split_off_into_a_new_file(editor: Editor) -> None:
     editor.open()
     editor.path = editor.path.with_name("bench.scene")

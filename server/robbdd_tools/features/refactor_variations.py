@@ -32,7 +32,7 @@ def variation_refactorings(snapshot: Snapshot, uri: str, span: Span) -> Iterator
         if site.placed.declaration.faults:
             continue
         for scenario in scenarios(site):
-            if not _touches(site.span(scenario.variant), span) or not _headed(scenario):
+            if not _touches(site.span(scenario.variant), span) or not is_headed(scenario):
                 continue
             yield from _as_table(scenario)
             yield from _as_product(scenario)
@@ -156,7 +156,7 @@ def _replaced(scenario: Scenario, title: str, text: str) -> Fix:
     return Fix(title, (Edit(site.uri, site.span(scenario.variant.variation), text),))
 
 
-def _headed(scenario: Scenario) -> bool:
+def is_headed(scenario: Scenario) -> bool:
     """Return whether a variation begins with ``variation:``. The published syntax has neither this line nor tables."""
     start = scenario.site.span(scenario.variant.variation).start
     return scenario.site.file.document.text[:start].rstrip().endswith(":")

@@ -12,6 +12,7 @@ from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.refactor_clauses import extracted_clauses
 from robbdd_tools.features.refactor_declarations import modernised, split_scene
+from robbdd_tools.features.refactor_literals import literal_as_variable
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import linked_places
 from robbdd_tools.features.rename_files import ImportLines, affected_files, import_edits
@@ -39,6 +40,7 @@ def refactorings(ls: RobbddServer, snapshot: Snapshot, uri: str, span: Span) -> 
         found.append((fix, kinds.RefactorInline if inline else kinds.RefactorRewrite))
     found += [
         (extracted_clauses(snapshot, uri, span), kinds.RefactorExtract),
+        (literal_as_variable(snapshot, uri, span), kinds.RefactorExtract),
         (modernised(snapshot, uri), kinds.RefactorRewrite),
         (split_scene(snapshot, uri, span.start), kinds.RefactorExtract),
     ]
