@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from checks.models import found
-from kit import DOCS, EVENTS, STORY, TEMPLATE
+from kit import DOCS, EVENTS, SCENE, STORY, TEMPLATE
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.registry import load_catalog
 
@@ -76,3 +76,24 @@ def test_the_page_lists_the_events_of_the_catalog() -> None:
     page = (DOCS / "semantics.md").read_text(encoding="utf-8")
     for behaviour in load_catalog().behaviours.values():
         assert f"| `{behaviour.name}` | {', '.join(f'`{event}`' for event in behaviour.events)} |" in page
+
+
+PARTS = """    for all (var x in <parts>) {
+        When: Behaviour (ns=t) load { duration: from <pick-start> until <place-end> <robot> picks <part> }
+    }
+    When:
+        event <EVENT> occurs
+        Behaviour (ns=t) unload { duration: from <pick-start> until <end> <robot> picks <part> }
+"""
+
+
+@pytest.mark.parametrize(
+    ("event", "count"), [("place-end", 1), ("pick-start", 0), ("start", 0), ("end", 0), ("parked", 0)]
+)
+def test_an_event_of_another_part_is_never_awaited(event: str, count: int) -> None:
+    begin, end = TEMPLATE.index("    When:"), TEMPLATE.index("    Then:")
+    parts = PARTS.replace("EVENT", event)
+    template = TEMPLATE[:begin] + parts + TEMPLATE[end:]
+    template = template.replace("    Given:", "    event parked when <part> is at rest\n    Given:", 1)
+    findings = found(f"//- main.bdd\n{EVENTS}{template}{STORY}//- lab.scene\n{SCENE}", "no-emitter")
+    assert [one.message.partition(" emits ")[2].split("'")[1] for one in findings] == [event] * count

@@ -49,6 +49,7 @@ def no_emitter(site: Site) -> Iterator[Diagnostic]:
     if isinstance(root, tree.Template):
         if site.whole(root):
             yield from _unemitted(site, root, _emitters(site, root))
+            yield from _emitted_elsewhere(site, root)
         return
     for scenario in scenarios(site):
         template = scenario.template
@@ -79,6 +80,38 @@ def _emitters(site: Site, template: tree.Template) -> _Emitters:
             if event is not None:
                 found.bound.setdefault(_key(event), emission.event.path)
     return found
+
+
+def _emitted_elsewhere(site: Site, template: tree.Template) -> Iterator[Diagnostic]:
+    """Report events that a behaviour awaits, but that only another When or loop of the template emits."""
+    whens = [node for node in walk(template.body) if isinstance(node, tree.When)]
+    emitted = [set(_keys_of(site, when)) for when in whens]
+    every = set[Key]().union(*emitted)
+    for when, own in zip(whens, emitted, strict=True) if len(whens) > 1 else ():
+        for ref in (one.event for step in when.steps for one in step.events):
+            event = site.target(ref)
+            if event is not None and _key(event) in every - own - set(_keys_of(site, template.duration)):
+                message = (
+                    f"only another 'When:' of the template emits '{ref.path}', and each has its own occurrences, so "
+                    "that this behaviour would wait without end: name an event of this 'When:', or define one"
+                )
+                yield finding(site, ref, Severity.WARNING, CODE, message)
+
+
+def _keys_of(site: Site, node: tree.When | tree.During | None) -> Iterator[Key]:
+    """Yield the events that bound the behaviours of a When, or a duration, and those that behaviours state to emit."""
+    for inner in () if node is None else walk(node):
+        match inner:
+            case tree.During(start=start, end=end):
+                refs = (start, end)
+            case tree.Emission(event=event):
+                refs = (event,)
+            case _:
+                refs = ()
+        for ref in refs:
+            found = site.target(ref)
+            if found is not None:
+                yield _key(found)
 
 
 def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Diagnostic]:
