@@ -179,3 +179,24 @@ GANTRY = "".join(
     ]
 )
 """Three sliding axes and a wrist in URDF, with a mimic joint and a visual mesh of a package that is not here."""
+
+
+def _wheel(side: int) -> str:
+    return (
+        f'<body name="wheel{side}" pos="0 {0.2 * side} .08"><joint name="axle{side}" axis="0 1 0" damping=".1"/>'
+        '<geom type="cylinder" size=".07 .02" euler="90 0 0" mass="1" contype="0" conaffinity="0"/></body>'
+    )
+
+
+_STANDING = SIX[SIX.index('<body name="b0"') : SIX.index("</worldbody>")]
+_PLATFORM = (
+    '<body name="platform"><joint name="east" type="slide" axis="1 0 0"/>'
+    '<joint name="north" type="slide" axis="0 1 0"/><joint name="heading" axis="0 0 1"/>'
+    '<geom type="box" size=".22 .2 .15" pos="0 0 .2" mass="40"/>'
+    + _wheel(1)
+    + _wheel(-1)
+    + '<body name="mount" pos="0 0 .7"><geom type="cylinder" size=".07 .18" pos="0 0 -.18" mass="8"/>'
+    + f"{_STANDING}</body></body>"
+)
+ROVER = SIX.replace(_STANDING, _PLATFORM)
+"""The same arm with two fingers on a platform that drives, with two wheels that only show it."""

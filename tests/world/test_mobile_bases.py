@@ -6,19 +6,24 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import cos, hypot, pi, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robbdd_tools.agent.behaviour_calls import Call
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import Implementation, ModelSource, Realisation
+from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.base_routes import RouteSearch, cost
+from robbdd_tools.world.composition import FLOOR
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.reaching import NONE, ReachSampler
+from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.tilted_base import Tilt
+from world import strangers
 from world.test_staging import instance, link
 from world.worlds import PANDA, SCENE, scenario
 
@@ -87,13 +92,16 @@ def catalog(element: str, name: str, body: str) -> Realisation:
 
 
 def fetched(
-    crate: tuple[float, ...] = (), config: Sequence[ConfigSpec] = (), calls: Sequence[Call] = TASK
+    crate: tuple[float, ...] = (),
+    config: Sequence[ConfigSpec] = (),
+    calls: Sequence[Call] = TASK,
+    rover: Realisation | None = None,
 ) -> Execution:
     """Return an execution in which the rover fetches a cube, with a crate on the floor."""
     placed = [
         catalog(NEAR, "table", "near"),
         catalog(FAR, "table", "far"),
-        catalog(ROVER, "mobile-panda", "base"),
+        rover or catalog(ROVER, "mobile-panda", "base"),
         *([catalog(CRATE, "bin", "crate")] if crate else []),
     ]
     staged = instance(
@@ -137,6 +145,44 @@ def test_a_mobile_robot_fetches_a_cube_from_one_table_and_brings_it_to_another()
     margins = reach.record(len(trace.times))[ROVER, CUBE]
     assert margins[0] == NONE
     assert margins[there] > 0.0
+
+
+def own(folder: Path, text: str) -> Realisation:
+    """Return a mobile robot from a file."""
+    (folder / "rover.xml").write_text(text, encoding="utf-8")
+    origin = Origin(str(folder / "hall.scenex"), 3, 7)
+    source = ModelSource("x:rover", "mjcf", "file", "rover.xml", bodies=(("x:g.base", ""),), origin=origin)
+    return Realisation(ROVER, (source,), is_agent=True)
+
+
+@pytest.mark.physics
+def test_a_mobile_robot_from_a_file_does_the_same(tmp_path: Path) -> None:
+    run = fetched(rover=own(tmp_path, strangers.ROVER))
+    assert run.completed == 4, run.course.failures
+    (cube, _), (container, _) = run.simulation.pose(CUBE), run.simulation.pose(BIN)
+    assert abs(cube[:2] - container[:2]).max() < 0.15
+
+
+def test_wheels_and_joints_of_the_base_are_not_those_of_the_arm(tmp_path: Path) -> None:
+    model = own(tmp_path, strangers.ROVER).models[0]
+    found = robot_from(model, ROVER)
+    assert found.joints == ("q1", "q2", "q3", "q4", "q5", "q6")
+    assert found.mount[2] == FLOOR
+    base = base_of(found)
+    assert base is not None
+    assert (base.joints, base.stated) == (("east", "north", "heading"), False)
+
+
+def test_a_base_that_drives_cannot_be_tilted(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="drives on the floor, so its base cannot be tilted"):
+        robot_from(own(tmp_path, strangers.ROVER).models[0], ROVER, Tilt((0.0, 1.0, 0.0, 0.0), 1.0))
+
+
+def test_a_gantry_with_short_axes_does_not_drive(tmp_path: Path) -> None:
+    short = strangers.ROVER.replace('axis="1 0 0"/>', 'axis="1 0 0" range="-1 1"/>', 1)
+    found = robot_from(own(tmp_path, short).models[0], ROVER)
+    assert found.joints[:3] == ("east", "north", "heading")
+    assert base_of(found) is None
 
 
 @pytest.mark.physics

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.planar_joints import LEVEL, planar_joints
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_specs import load_robot
 
@@ -23,8 +24,6 @@ LEVER = 0.2
 """Half the distance (m) of the wheels of such a base: its largest torque is its largest force with this lever."""
 FREQUENCY, RATIO = 20.0, 1.0
 """Natural frequency (rad/s) and damping ratio of the servos of a base."""
-LEVEL = 1e-6
-"""Deviation of an axis from the horizontal or the vertical up to which it counts as such."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,34 +41,6 @@ class MobileBase:
     torque: float
     stated: bool
     gains: tuple[tuple[float, float], ...]
-
-
-def planar_joints(model: Any, joint: int) -> tuple[int, int, int] | None:
-    """Return the joints of a mobile base that carries a joint of an arm, ``None`` if its base is fixed.
-
-    They are the first three joints from the world on: two horizontal sliding ones, then one about the vertical.
-    """
-    chain = [one for one in _joints_to(model, joint) if one != joint]
-    if len(chain) < len(_BASE) or tuple(int(model.jnt_type[one]) for one in chain[:3]) != _BASE:
-        return None
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    first, second, third = (data.xaxis[one] for one in chain[:3])
-    is_level = abs(first[2]) < LEVEL and abs(second[2]) < LEVEL and abs(float(first @ second)) < LEVEL
-    return (chain[0], chain[1], chain[2]) if is_level and abs(third[2]) > 1.0 - LEVEL else None
-
-
-_BASE = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
-
-
-def _joints_to(model: Any, joint: int) -> list[int]:
-    """Return the joints from the world to a joint, inclusive."""
-    body, found = int(model.jnt_bodyid[joint]), list[int]()
-    while body:
-        first = int(model.body_jntadr[body])
-        found = [*range(first, first + int(model.body_jntnum[body])), *found]
-        body = int(model.body_parentid[body])
-    return [one for one in found if one <= joint]
 
 
 def read_base(model: Any, joint: str) -> MobileBase | None:

@@ -16,6 +16,7 @@ from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import FoundGripper, GripperReader
 from robbdd_tools.world.home_posture import find_home
 from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
+from robbdd_tools.world.planar_joints import drives
 from robbdd_tools.world.srdf_semantics import apply_srdf, path_to
 from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
 from robbdd_tools.world.urdf_files import HIDDEN, is_urdf
@@ -33,6 +34,10 @@ SLIDING = 10.0
 """Factor of these gains for a sliding joint (N/m, N s/m)."""
 FREQUENCY, RATIO = 20.0, 0.7
 """Natural frequency (rad/s) and damping ratio of added servos that move a large inertia."""
+BASE_JOINTS = 3
+"""Number of joints of a base that drives."""
+FLOOR = -0.65
+"""Height (m, world frame) of the floor on which it stands."""
 TOOL = "robbdd-tool"
 ALIGNED = np.cos(np.radians(5.0))
 """Cosine of the angle between the stated tool's y axis and the fingers' direction up to which it is kept."""
@@ -74,6 +79,12 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     uses_group = semantics.palm and not stated.pads and not stated.tool
     chain = path_to(spec.body(semantics.palm)) if uses_group else _chain_to_palm(spec, source, arm)
     joints = _joints(source, chain)
+    is_mobile = drives(compiled(spec, source), joints)
+    joints = joints[BASE_JOINTS:] if is_mobile else joints
+    if is_mobile and tilt is not None:
+        raise SceneError(
+            f"the robot in {source.name} drives on the floor, so its base cannot be tilted", origin=source.origin
+        )
     parts = GripperParts(spec, source, arm, str(chain[-1].name), semantics.note(stated, arm))
     parts.name_geoms()
     gripper = GripperReader(parts).read()
@@ -94,7 +105,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
         dict(gripper.open_joints),
         chain[-1].name,
         [one.positions for one in semantics.homes],
-        height=None if tilt is None else tilt.height,
+        height=FLOOR if is_mobile else None if tilt is None else tilt.height,
     )
     for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):
@@ -121,7 +132,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
         gripper_open=gripper.open,
         gripper_closed=gripper.closed,
         pads=gripper.pads,
-        mount=(0.0, 0.0, 0.15),
+        mount=(-0.8, 0.0, FLOOR) if is_mobile else (0.0, 0.0, 0.15),
         stroke=gripper.stroke,
         doc=f"from {source.name}",
         source=source.name,
@@ -178,7 +189,7 @@ def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
             return path_to(spec.body(common[-1]))
     body = spec.worldbody
     while True:
-        branches = [child for child in body.bodies if _moves(child)]
+        branches = _without_wheels(body, [child for child in body.bodies if _moves(child)])
         if len(branches) != 1:
             break
         body = branches[0]
@@ -194,6 +205,17 @@ def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
         raise SceneError(text, origin=source.origin)
     common = {one.name for one in tool}
     return [one for one in path_to(body) if not tool or one.name in common]
+
+
+def _without_wheels(body: Any, branches: list[Any]) -> list[Any]:
+    """Return the branches with joints of a body without the wheels of a base that drives."""
+    kinds = [joint.type for one in path_to(body) for joint in one.joints]
+    slide, hinge = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE
+    if len(branches) < 2 or kinds != [slide, slide, hinge]:
+        return branches
+    return [
+        max(branches, key=lambda branch: len(branch.joints) + sum(len(one.joints) for one in branch.find_all("body")))
+    ]
 
 
 def _moves(body: Any) -> bool:

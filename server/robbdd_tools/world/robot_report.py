@@ -16,6 +16,7 @@ from robbdd_tools.world.composition import COLUMN
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import path_of, velocity_limits
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.srdf_semantics import file_of
@@ -48,6 +49,11 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         unusual = ", ".join(impossible_inertias(path_of(source))) if source.kind in ("file", "ros") else ""
         if unusual:
             yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
+    base = base_of(robot)
+    if base is not None:
+        assumed = "" if base.stated else " (partly assumed)"
+        limits = f"{base.speed:g} m/s, {base.turning:g} rad/s, {base.force:.0f} N and {base.torque:.0f} N m{assumed}"
+        yield f"base: drives by the joints {', '.join(base.joints)}, at most with {limits}"
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
