@@ -19,6 +19,9 @@ from robbdd_tools.workbench.found_runs import NOTHING_SEEN, Seen, read_store
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
+PAUSE = 2.0
+"""Seconds after which a store is read again while a run in it is in progress."""
+
 
 class StoredVerdicts:
     """Updates the results of the server from the stores of its projects."""
@@ -27,6 +30,8 @@ class StoredVerdicts:
         self._server = server
         self._seen: dict[str, Seen] = {}
         self._known: set[Path] = set()
+        self._in_use: set[Path] = set()
+        """Stores that are read again, because a run in them was in progress."""
         self._reading = asyncio.Lock()
         self._loaded = asyncio.Event()
 
@@ -83,6 +88,8 @@ class StoredVerdicts:
                 read = await asyncio.to_thread(read_store, store, before)
                 dropped = read.is_replaced and self._drop(store)
                 changed = changed or dropped or before != read.seen
+                if read.seen.number < read.newest:
+                    self._read_again(store)
                 self._seen[key] = read.seen
                 for run in read.found:
                     ls.results.merge(run.scenarios, read.newest, some_repetitions=run.some_repetitions)
@@ -90,6 +97,17 @@ class StoredVerdicts:
                 ls.show_results(ls.opened())
                 ls.rejudging.results_changed()
                 await self.save()
+
+    def _read_again(self, store: RunStore) -> None:
+        """Read a store after a pause. The last report about a run may arrive before the run has ended."""
+        if store.folder not in self._in_use:
+            self._in_use.add(store.folder)
+            self._server.spawn(self._refresh_later(store))
+
+    async def _refresh_later(self, store: RunStore) -> None:
+        await asyncio.sleep(PAUSE)
+        self._in_use.discard(store.folder)
+        await self.refresh([store])
 
     async def save(self) -> None:
         """Save the shown results for the next session. In an untrusted workspace, nothing is written."""

@@ -28,10 +28,13 @@ SOURCES = f"**/*{{{','.join(SUFFIXES)}}}"
 """Files that models may name. The errors of code from a run are outdated when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
 """Results file of a stored run, also of one from the command line."""
-STUDIES = f"**/{FOLDER.parent}/studies/**/{STUDY}"
-"""Results of a study, whose lenses depend on whether there are any."""
-STORES = f"**/{{{FOLDER.parent},{FOLDER.as_posix()},{FOLDER.parent}/{NAME}}}"
-"""A store of runs, and the folders around it. Clients report a deleted folder without the files in it."""
+DATABASE = f"**/{FOLDER.parent}/{NAME}"
+"""Results of all runs of a store, which change at the end of every run. Clients may miss the files in folders that were
+just made, such as those of the first run."""
+STUDIES = f"**/{FOLDER.parent}/{{studies,studies/*,studies/**/{STUDY}}}"
+"""Results of a study, whose lenses depend on whether there are any, and the folders that are made for the first one."""
+STORES = f"**/{{{FOLDER.parent},{FOLDER.as_posix()}}}"
+"""The folders of a store. Clients report a deleted folder without the files in it."""
 
 
 def register_watching(server: RobbddServer) -> None:
@@ -42,7 +45,7 @@ def register_watching(server: RobbddServer) -> None:
         # No analysis depends on runs.
         every = [change.uri for change in params.changes]
         stores = {uri: store for uri in every if (store := _store_of(uri)) is not None}
-        studies = [uri for uri in every if uri.endswith(f"/{STUDY}")]
+        studies = [uri for uri in every if f"/{FOLDER.parent}/studies" in uri]
         changed = [uri for uri in every if uri not in stores and uri not in studies and not is_source(uri)]
         if stores or studies:
             ls.refreshes.want(LENSES)
@@ -84,7 +87,7 @@ async def watch_files(ls: RobbddServer) -> None:
         return
     options = types.DidChangeWatchedFilesRegistrationOptions(
         watchers=[
-            *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, SOURCES, RUNS)),
+            *(types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, SOURCES, RUNS, DATABASE)),
             types.FileSystemWatcher(STORES, types.WatchKind.Delete),
             types.FileSystemWatcher(STUDIES, types.WatchKind.Create | types.WatchKind.Delete),
         ]
