@@ -21,7 +21,7 @@ from robbdd_tools.base.printable import printable
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.catalog.registry import problems_of_words
 from robbdd_tools.commands import FAILED, OK, signal_code
-from robbdd_tools.commands.arguments import allow_selection, wanted
+from robbdd_tools.commands.arguments import allow_selection, seed, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
 from robbdd_tools.commands.evidence_arguments import add_evidence
 from robbdd_tools.commands.falsify_arguments import add_falsify
@@ -121,7 +121,7 @@ def argument_parser() -> argparse.ArgumentParser:
     gherkin.add_argument(
         "--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own file"
     )
-    gherkin.add_argument("--seed", type=int, default=None, help="seed of samples and runs (default: 1)")
+    gherkin.add_argument("--seed", type=seed, default=None, help="seed of samples and runs (default: 1)")
     allow_selection(gherkin)
     gherkin.set_defaults(command=_gherkin)
 
@@ -156,7 +156,7 @@ def argument_parser() -> argparse.ArgumentParser:
     text = "show this arm alone, and what was found in its MJCF or URDF file; or an arm of the catalog"
     view.add_argument("--robot", metavar="ARM", help=text)
     view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
-    view.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
+    view.add_argument("--seed", type=seed, default=None, help="seed of all random choices (default: 1)")
     allow_scenex(view)
     view.add_argument("-o", "--output", metavar="FILE.png", type=Path, help="default: the model's name with .png")
     view.set_defaults(command=_view)

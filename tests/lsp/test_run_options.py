@@ -103,6 +103,7 @@ def test_nothing_failed_where_only_others_did(tmp_path: Path) -> None:
         ({"repeat": 0}, "'repeat': it must be a whole number above 0"),
         ({"jobs": True}, "'jobs': it must be a whole number above 0"),
         ({"seed": 1.5}, "'seed': it must be a whole number"),
+        ({"seed": 2**63}, "'seed': it must be a whole number from -9223372036854775807"),
         ({"pairwise": 4}, "'pairwise': it must be 2 or 3"),
         ({"first": 1, "sample": 1}, "give only one of first and sample"),
         ({"only": [{"variant": VARIANT, "variations": ["1"]}]}, "no usable 'only'"),

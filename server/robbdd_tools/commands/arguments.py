@@ -30,6 +30,19 @@ def wanted(options: argparse.Namespace) -> Wanted:
     return found if options.seed is None else replace(found, seed=options.seed)
 
 
+def seed(text: str) -> int:
+    """Parse a seed that the database of results can store; raises ``ArgumentTypeError``."""
+    from robbdd_tools.syntax.study_content import MOST_SEED
+
+    try:
+        number = int(text)
+    except ValueError:
+        number = MOST_SEED + 1
+    if abs(number) > MOST_SEED:
+        raise argparse.ArgumentTypeError(f"'{text[:40]}' is not a whole number from -{MOST_SEED} to {MOST_SEED}")
+    return number
+
+
 def positive(text: str) -> int:
     """Parse a number above 0; raises ``ArgumentTypeError``."""
     number = int(text) if text.isdecimal() else 0

@@ -6,7 +6,7 @@ import argparse
 from math import isfinite
 from pathlib import Path
 
-from robbdd_tools.commands.arguments import positive
+from robbdd_tools.commands.arguments import positive, seed
 from robbdd_tools.commands.lost_output import output_may_be_lost
 
 METHODS = ("cma-es", "sobol", "uniform")
@@ -22,7 +22,7 @@ def add_falsify(parser: argparse.ArgumentParser) -> None:
     text = "value from which the search begins (default: the middle of its range); repeats"
     parser.add_argument("--nominal", metavar="VARIABLE=VALUE", type=_value, action="append", help=text)
     parser.add_argument(
-        "--seed", type=int, default=None, help="seed of the search and of executions (default: the study's)"
+        "--seed", type=seed, default=None, help="seed of the search and of executions (default: the study's)"
     )
     text = "agent processes at a time (default: as many as there are cores)"
     parser.add_argument("--jobs", metavar="N", type=positive, help=text)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.commands.arguments import allow_selection, positive
+from robbdd_tools.commands.arguments import allow_selection, positive, seed
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.output import fail
 
@@ -23,7 +23,7 @@ def add_mutate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fault", metavar="NAME[=SIZE]", type=_fault, action="append", help=text)
     text = "only this scenario or execution; repeats"
     parser.add_argument("--scenario", metavar="NAME", action="append", help=text)
-    parser.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
+    parser.add_argument("--seed", type=seed, default=None, help="seed of all random choices (default: 1)")
     parser.add_argument("--repeat", metavar="N", type=positive, help="execute each scenario N times with each fault")
     text = "agent processes at a time (default: as many as there are cores)"
     parser.add_argument("--jobs", metavar="N", type=positive, help=text)

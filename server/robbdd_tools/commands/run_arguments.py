@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from robbdd_tools.commands.arguments import allow_selection, positive
+from robbdd_tools.commands.arguments import allow_selection, positive, seed
 from robbdd_tools.monitor.without_physics import KINEMATIC
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ CHOOSING = (
 def allow_run(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a run."""
     parser.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario or execution; repeats")
-    parser.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
+    parser.add_argument("--seed", type=seed, default=None, help="seed of all random choices (default: 1)")
     text = "execute each scenario N times, each with a different random seed"
     parser.add_argument("--repeat", metavar="N", type=positive, help=text)
     parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")

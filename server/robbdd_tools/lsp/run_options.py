@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.monitor.without_physics import KINEMATIC
+from robbdd_tools.syntax.study_content import MOST_SEED
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
@@ -217,6 +218,10 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
+def _is_seed(value: object) -> bool:
+    return isinstance(value, int) and _is_number(value) and abs(value) <= MOST_SEED
+
+
 def _is_positive(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value > 0
 
@@ -246,7 +251,8 @@ _FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
     **dict.fromkeys(("uri", "scenario", "where", "token", "scenex"), (_is_text, "a text")),
     **dict.fromkeys(("failed", "record", "stop_on_failure", "debug"), (_is_flag, "true or false")),
     **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
-    **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),
+    "variation": (_is_number, "a whole number"),
+    "seed": (_is_seed, f"a whole number from -{MOST_SEED} to {MOST_SEED}"),
     "pairwise": (_is_strength, "2 or 3"),
     "bhv": (_is_substitution, "an object of behaviour implementations and catalog behaviours"),
     "only": (_is_choice, "a list of objects with a 'variant' and, if wanted, 'variations' and an 'execution'"),
