@@ -21,7 +21,7 @@ from robbdd_tools.names.project import Project, Snapshot
 
 MOST_STEPS = 6
 MOST_LINES = 16
-"""Lines of Turtle after which no further node is shown."""
+"""Lines of Turtle from which on further nodes are left out."""
 
 
 @cache

@@ -34,6 +34,7 @@ SECTIONS = {
         ),
         *(
             "requirements",
+            "evidence",
             "gherkin",
             "pytest",
             "python",
