@@ -308,12 +308,12 @@ def test_numbers_on_a_topic_report_events(models: Path, tmp_path: Path) -> None:
 
 
 def test_a_goal_is_no_evidence_of_where_a_thing_is(models: Path, tmp_path: Path) -> None:
-    """Only the place to which the cube shall be brought is in the log: it lies in the bin from the first second on."""
+    """Only the place to which the cube is to be brought is in the log: it lies in the bin from the first second on."""
     without = drive(cube="unknown_thing")
     goal = [pose("/goal/cube0", (0.55, 0.3, 0.86), stamp=0.01 + tick / 10) for tick in range(100)]
     found, remarks = judged(models, tmp_path, [*without, *goal])
     assert verdicts(found)["at-goal"] == "unknown"
-    assert "'goal/cube0' may be where env:cube0 shall be, not where it is, so it is not used" in remarks
+    assert "'goal/cube0' may be where env:cube0 is meant to be, not where it is, so it is not used" in remarks
     seen = [pose("/camera/cube0", (0.55, 0.3, 0.86), stamp=0.01 + tick / 10) for tick in range(100)]
     found, remarks = judged(models, tmp_path, [*without, *goal, *seen])
     assert verdicts(found)["at-goal"] == "holds"

@@ -106,7 +106,7 @@ def test_a_base_is_no_tool_unless_it_is_stated(base: str) -> None:
 def test_a_place_that_is_planned_is_not_where_a_thing_is(planned: str) -> None:
     with pytest.raises(FramesProblem) as caught:
         frame_of("env:cup1", ["map", planned], {})
-    words = f"'{planned}' may be where env:cup1 shall be, not where it is, so it is not used"
+    words = f"'{planned}' may be where env:cup1 is meant to be, not where it is, so it is not used"
     assert str(caught.value) == f"{words}; if it was measured, name it with --frame cup1=FRAME"
     assert frame_of("env:cup1", ["map", planned, "camera/cup1"], {}) == "camera/cup1"
     assert frame_of("env:cup1", ["map", planned], {"cup1": planned}) == planned

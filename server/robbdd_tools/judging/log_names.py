@@ -106,7 +106,7 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
     if found:
         raise FramesProblem(f"several frames fit {element}: {', '.join(found)}; choose with --frame {name}=FRAME")
     if named:
-        words = f"'{named[0]}' may be where {element} shall be, not where it is"
+        words = f"'{named[0]}' may be where {element} is meant to be, not where it is"
         raise FramesProblem(f"{words}, so it is not used; if it was measured, {hint}")
     raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; {hint}")
 
