@@ -76,7 +76,7 @@ def _document(
 ) -> Mapping[str, Any]:
     # A scenario with the same values and repetition is the same test in every run, which makes its history.
     same = json.dumps([result.variant, dict(result.values), result.execution, result.repetition], sort_keys=True)
-    times = {} if end is None else _times(*end)
+    times: Mapping[str, int] = {} if end is None else _times(*end)
     violated = next((one for one in result.clauses if one.verdict is result.verdict), None)
     labels = [
         ("framework", "robbdd"),
