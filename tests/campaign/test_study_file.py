@@ -47,6 +47,20 @@ def test_the_seed_and_the_repetition_determine_the_seeds_of_executions(tmp_path:
     assert not set(first) & set(seeds(f"{HEAD} seed: 4 }}"))
 
 
+def test_a_repetition_is_a_block_of_executions_with_the_same_seed(tmp_path: Path) -> None:
+    free = load_study(write_study(tmp_path, f"{HEAD} seed: 3 }}"))
+    blocked = load_study(write_study(tmp_path, f"{HEAD} seed: 3 block: repetition }}"))
+    seeds = [(one.repetition, one.seed) for one in blocked.cells[0].plan.specs(repeat=3)]
+    assert len(seeds) == 12
+    assert len(set(seeds)) == 3
+    assert len({seed for _, seed in seeds}) == 3
+    prepared = blocked.cells[0].plan.prepare(tmp_path / "prepared", repeat=3).scenarios
+    assert {(one.repetition, one.seed) for one in prepared} == set(seeds)
+    assert blocked.digest != free.digest
+    other = load_study(write_study(tmp_path, f"{HEAD} seed: 4 block: repetition }}"))
+    assert {one.seed for one in other.cells[0].plan.specs(repeat=3)}.isdisjoint(seed for _, seed in seeds)
+
+
 def test_levels_of_factors_are_combined_and_executed_with_the_same_seeds(tmp_path: Path) -> None:
     for path in (EXAMPLES / "pickplace").iterdir():
         if path.is_file():
@@ -107,6 +121,10 @@ def test_implementations_of_the_model_are_levels(tmp_path: Path) -> None:
         ("repeat: 0", "3:9 'repeat' is a whole number from 1 to 1000000, not 0"),
         ("repeat: 1.5", "3:9 'repeat' is a whole number from 1 to 1000000, not 1.5"),
         ("seed: x", "3:7 expected a whole number from 0 to 9223372036854775807, not 'x'"),
+        ("block: 3", "3:8 expected 'repetition': all executions of a repetition get the same seed, not '3'"),
+        ("traces: some 3 MB", "3:9 a study keeps the traces of 'failures' or of 'all', such as 'failures 500 MB'"),
+        ("traces: all 0 MB", "3:13 expected a whole number from 1 to 1000000, not 0"),
+        ("traces: all 3", "3:14 expected the unit 'MB', not '}'"),
         ("timeout: 3", "3:11 expected the unit 'seconds', not '}'"),
         ("repeat: 1 repeat: 2", "3:11 'repeat' is given twice: remove one of them"),
         ("first: 1 sample: 2", "3:10 give only one of 'first' and 'sample'"),

@@ -26,6 +26,7 @@ from robbdd_tools.workbench.diagnostics import Finding, Place
 from robbdd_tools.workbench.model import Model, ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan, Selection
+from robbdd_tools.workbench.points import block_seeds
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.study_ranges import Fault
@@ -109,6 +110,7 @@ class Study:
             *(cell.words for cell in self.cells),
             *(cell.plan.digest for cell in self.cells),
             *(hashlib.sha256(load_bytes(self.path.parent / word.text)).hexdigest() for word in scenes),
+            *(["block"] if content.is_blocked else []),
             *([] if self.cells[0].plan.selection.points is None else [repr(self.cells[0].plan.selection.points)]),
         ]
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
@@ -199,7 +201,11 @@ class StudyLoader:
             for levels, chosen in combinations:
                 plan = self._plan(chosen, self._content.factors[0].levels[0] if levels else None, "factor")
                 if plan is not None:
-                    yield Cell(levels, plan)
+                    yield Cell(levels, self._blocked(plan) if self._content.is_blocked else plan)
+
+    def _blocked(self, plan: Plan) -> Plan:
+        seeded = block_seeds(plan.requests[0].seed)
+        return replace(plan, requests=tuple(replace(one, completed=seeded) for one in plan.requests))
 
     def _points(self) -> Points | None:
         design = self._content.design

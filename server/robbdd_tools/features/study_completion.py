@@ -42,7 +42,11 @@ _SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
 )
 """Values that are names or files. Whatever else is expected is a word."""
 
-_CHOICES: Mapping[str, Sequence[str]] = {"design": DESIGNS, "traces": (FAILURES, ALL)}
+_CHOICES: Mapping[str, Sequence[str]] = {
+    "design": DESIGNS,
+    "traces": (FAILURES, ALL),
+    "block": ("repetition",),
+}
 """The words that begin the value of a setting."""
 _LENGTHS = {"timeout": 3, "design": 3, "traces": 4}
 """The number of tokens of a value with its colon, of settings whose value is not one token."""

@@ -32,6 +32,10 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
             "Ends the study early: when the 95 % interval of the pass rate is at most W wide, or when a pass rate of P "
             "is shown, or refuted in favour of Q. Rates and widths are between 0 and 1.",
         ),
+        "block": (
+            "block: repetition",
+            "Gives all executions of a repetition the same seed, whatever their scenario, values and levels.",
+        ),
         "traces": (
             "traces: failures N MB\ntraces: all N MB",
             "Keeps traces (MCAP) of the executions that do not hold, or of all, up to N MB in total. "

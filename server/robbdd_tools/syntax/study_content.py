@@ -103,6 +103,8 @@ class StudyText:
     ranges: list[Range] = field(default_factory=list[Range])
     design: Design | None = None
     traces: KeptTraces | None = None
+    is_blocked: bool = False
+    """Whether all executions of one repetition have the same seed."""
     numbers: dict[str, float] = field(default_factory=dict[str, float])
     places: dict[str, Span] = field(default_factory=dict[str, Span])
     """The places of the names of settings."""

@@ -12,6 +12,7 @@
             | "factor" "bhv" "<" name ">" ":" "{" level { "," level } "}"
             | "factor" "var" "<" name ">" ":" "from" number [ unit ] "to" number [ unit ]
             | "traces" ":" ( "failures" | "all" ) whole number "MB"
+            | "block" ":" "repetition"
             | "design" ":" ( "latin-hypercube" | "sobol" | "grid" ) whole number
     level   = name | "<" name ">"
 
@@ -22,7 +23,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
@@ -30,11 +30,7 @@ from robbdd_tools.syntax.study_content import (
     ALL,
     DESIGNS,
     FAILURES,
-    MOST_BATCH,
     MOST_POINTS,
-    MOST_REPETITIONS,
-    MOST_SECONDS,
-    MOST_SEED,
     MOST_TRACES,
     SOBOL,
     Design,
@@ -44,6 +40,7 @@ from robbdd_tools.syntax.study_content import (
     StudyText,
     Word,
 )
+from robbdd_tools.syntax.study_numbers import NUMBERS
 from robbdd_tools.syntax.study_tokens import Token, study_tokens
 
 
@@ -55,25 +52,9 @@ class _Unexpected(Exception):
         self.token = token
 
 
-class _NumberRange(NamedTuple):
-    least: int
-    most: int
-    is_whole: bool = True
-    unit: str = ""
-
-
-_NUMBERS: Mapping[str, _NumberRange] = {
-    "first": _NumberRange(1, MOST_REPETITIONS),
-    "sample": _NumberRange(1, MOST_REPETITIONS),
-    "pairwise": _NumberRange(2, 3),
-    "repeat": _NumberRange(1, MOST_REPETITIONS),
-    "seed": _NumberRange(0, MOST_SEED),
-    "batch": _NumberRange(1, MOST_BATCH),
-    "timeout": _NumberRange(0, MOST_SECONDS, is_whole=False, unit="seconds"),
-}
 REDUCING = ("first", "sample", "pairwise")
 """Settings of which a study has at most one."""
-SETTINGS = ("scenarios", "where", *_NUMBERS, "stop", "traces", "design", "factor")
+SETTINGS = ("scenarios", "where", *NUMBERS, "stop", "block", "traces", "design", "factor")
 """The words that begin a setting."""
 
 
@@ -127,6 +108,7 @@ class _Reader:
             "stop": self._stop,
             "design": self._design,
             "traces": self._traces,
+            "block": self._block,
         }
         if word.text not in SETTINGS or word.kind != "name":
             raise _Unexpected(word, f"'{word.text}' is not a setting of a study{_meant(word.text)}")
@@ -222,6 +204,11 @@ class _Reader:
             raise _Unexpected(token, f"a Sobol design has a power of two of points: write {below} or {2 * below}")
         self._found.design = Design(kind.text, size, Span(kind.span.start, token.span.end))
 
+    def _block(self) -> None:
+        self._expect(":")
+        self._expect("repetition", "'repetition': all executions of a repetition get the same seed")
+        self._found.is_blocked = True
+
     def _traces(self) -> None:
         self._expect(":")
         kind = self._take()
@@ -247,7 +234,7 @@ class _Reader:
 
     def _number(self, name: str) -> None:
         self._expect(":")
-        wanted = _NUMBERS[name]
+        wanted = NUMBERS[name]
         kind = "a whole number" if wanted.is_whole else "a number"
         form = f"{kind} from {wanted.least} to {wanted.most}"
         token = self._kind("number", form)

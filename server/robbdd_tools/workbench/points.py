@@ -119,6 +119,18 @@ def _rows(
             yield tuple(found[place] if place in found else next(values) for place in range(len(variation.variables)))
 
 
+def block_seeds(seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
+    """Return a function that gives an execution a seed that depends on its repetition alone.
+
+    A seed of the scene (``has config seed``) and that of a behaviour tree's execution stay as they are.
+    """
+
+    def seeded(spec: ScenarioSpec) -> ScenarioSpec:
+        return replace(spec, seed=scenario_seed(seed, "repetition", 1, spec.repetition))
+
+    return seeded
+
+
 def common_seeds(variables: Sequence[str], seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
     """Return a function that gives an execution a seed that does not depend on the values of some variables.
 
