@@ -54,6 +54,12 @@ const quantity = {
   captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
 };
 
+// A word as the value of a property: `colour: red`, `colour: red, grey`, `where colour = red`.
+const valueWords = [
+  { match: String.raw`(?<=[^=]=\s)${NAME}(?![\p{L}\p{N}_.-])`, name: "constant.other.value.robbdd" },
+  { match: String.raw`(?<=:\s)${NAME}(?=\s*[,}]|\s+${NAME}\s*:)`, name: "constant.other.value.robbdd" },
+];
+
 const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   quantity,
   COMMON,
@@ -69,6 +75,8 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
   phrases(DECLARE, "object", "workspace", "agent"),
   phrases(WORD, "of", "where", "and", "not"),
+  { match: String.raw`(?<![\p{L}\p{N}_-])${NAME}(?=\s*(?:!=|<=|>=|=|<|>)\s)`, name: "variable.other.property.robbdd" },
+  ...valueWords,
 ]);
 
 const predicates = phrases(
@@ -154,6 +162,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   },
   { match: String.raw`(?<![\p{L}\p{N}_-])pred(?=\s*\()`, name: `${PHRASE}.predicate.robbdd` },
   { match: String.raw`(?<![\p{L}\p{N}_-])${NAME}(?=\s*=)`, name: "variable.parameter.robbdd" },
+  valueWords[0],
   phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at", "opens", "closes", "pushes", "hands over", "moves to"),
   phrases(`${PHRASE}.event`, "occurs"),
   { match: String.raw`(?<=>)\s*(at|to)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
