@@ -313,6 +313,11 @@ BROKEN: dict[str, list[str]] = {
         EVENTS + TEMPLATE.replace("    var goal\n", "    var goal var part var part\n") + STORY,
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut, object nut, object nut-2"),
     ],
+    "catalog-phrase": [
+        _swapped(
+            _IN_TRAY, 'in-tray: holds(pred("{one} is located at {where}", one=<part>, where=<goal>), after <place-end>)'
+        ),
+    ],
     "hidden-variable": [
         _swapped(_IN_TRAY, f"( var goal exists in <places> ) such that {{ {_IN_TRAY} }}"),
         _swapped("    Then:\n", f"    {_LOOP}{{ {_LOOP}{{ When: {_MORE} }} }}\n    Then:\n"),
