@@ -49,6 +49,9 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         unusual = ", ".join(impossible_inertias(path_of(source))) if source.kind in ("file", "ros") else ""
         if unusual:
             yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
+    ghosts = list(_without_contacts(model, name))
+    if ghosts:
+        yield f"links without collision shapes, which pass through everything: {', '.join(ghosts)}"
     base = base_of(robot)
     if base is not None:
         assumed = "" if base.stated else " (partly assumed)"
@@ -61,6 +64,21 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     )
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
     yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
+
+
+def _without_contacts(model: Any, name: str) -> Iterator[str]:
+    """Yield the moving links whose shapes, if any, touch nothing: collisions of them are never noticed."""
+    own = _bodies(model, name)
+    touching = {
+        int(model.body_weldid[model.geom_bodyid[geom]])
+        for geom in range(model.ngeom)
+        if model.geom_contype[geom] or model.geom_conaffinity[geom]
+    }
+    for body in own:
+        # A link without any shape is a joint of several axes, not a part.
+        shown = bool(model.body_geomnum[body])
+        if model.body_weldid[body] == body and model.body_jntnum[body] and shown and body not in touching:
+            yield str(model.body(body).name).removeprefix(f"{name}/")
 
 
 def _fingers(model: Any, name: str, robot: RobotModel) -> str:
