@@ -1,5 +1,9 @@
 // Edits are judged at once on stored traces: beside the clause, in the verdict's colour but slanted, until a run.
 import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { dirname, join } from "node:path";
+import { promisify } from "node:util";
+import { LANGUAGE_SERVER } from "../harness/checkout.mjs";
 import { LONG, TRY, eventually } from "../harness/patience.mjs";
 import { story } from "../harness/story.mjs";
 import { themeColour, verdictAt } from "../harness/verdicts.mjs";
@@ -68,6 +72,22 @@ export function edits(window) {
     await replaceAt("goal>, before", "at-source:", "goal", "source");
     await verdictAt(workbench, GOAL, /^✔ 4\/4[^(]*$/);
   });
+
+  step("next to a wide line, the verdict is in sight", async () => {
+    await workbench.command("View: Toggle Primary Side Bar Visibility");
+    await replaceAt("goal>, from", "goal-untouched:", "goal", "source");
+    const { side, slanted } = await verdictAt(workbench, /^\s*\)$/, /^↑ . .*4 hold \(re-judged, not executed\)/);
+    assert.deepEqual([side, slanted], ["after", true]);
+    await inBothThemes("edits-wide");
+    await replaceAt("source>, from", "goal-untouched:", "source", "goal");
+    await verdictAt(workbench, GOAL, /^✔ 4\/4[^(]*$/);
+  });
+
+  step("a run of the command line takes the place of the editor's, whose store is new to the window", async () => {
+    const robbdd = join(dirname(LANGUAGE_SERVER), "robbdd");
+    await promisify(execFile)(robbdd, ["run", FILE, "--repeat", "2"], { cwd: session.workspace });
+    await verdictAt(workbench, GOAL, /^✔ 8\/8[^(]*$/, { timeout: LONG });
+  });
 }
 
 /** Replace the beginning of a text after another one, as someone who types. */
@@ -85,7 +105,7 @@ async function replaceAt(text, after, old, typed) {
 
 /** The text of the file on disk, which no step saves, at the place of a text in the editor. */
 function original(text) {
-  return { "pick-end": "place-end", "9 seconds after": "after <evt-place-end>", "goal>, before": "source>, before" }[text] ?? text;
+  return { "pick-end": "place-end", "9 seconds after": "after <evt-place-end>", "goal>, before": "source>, before", "source>, from": "goal>, from" }[text] ?? text;
 }
 
 async function inBothThemes(name) {
