@@ -9,6 +9,7 @@ import shlex
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import cast
 
 import pytest
 import yaml
@@ -45,8 +46,9 @@ def commands(page: Path) -> Iterator[tuple[str, bool]]:
 
 
 def subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    actions = [one for one in parser._actions if isinstance(one, argparse._SubParsersAction)]  # pyright: ignore[reportPrivateUsage]
-    return dict(actions[0].choices) if actions else {}
+    """Return the subcommands of a command by name; `argparse` keeps them in a private type."""
+    choices = [one.choices for one in parser._actions if one.nargs == argparse.PARSER]  # pyright: ignore[reportPrivateUsage]
+    return cast("dict[str, argparse.ArgumentParser]", choices[0]) if choices else {}
 
 
 def problem(command: str, *, is_line: bool) -> str | None:

@@ -17,9 +17,9 @@ from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin,
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.base_routes import RouteSearch, cost
-from robbdd_tools.world.composition import FLOOR
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.mobile_base import base_of
+from robbdd_tools.world.placement import FLOOR
 from robbdd_tools.world.reaching import NONE, ReachSampler
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.tilted_base import Tilt
