@@ -46,9 +46,12 @@ def commands(page: Path) -> Iterator[tuple[str, bool]]:
 
 
 def subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    """Return the subcommands of a command by name; `argparse` keeps them in a private type."""
-    choices = [one.choices for one in parser._actions if one.nargs == argparse.PARSER]  # pyright: ignore[reportPrivateUsage]
-    return cast("dict[str, argparse.ArgumentParser]", choices[0]) if choices else {}
+    """Return the commands below a parser; there is no public way to ask for them."""
+    for action in parser._actions:  # pyright: ignore[reportPrivateUsage]
+        choices = cast("object", action.choices)
+        if isinstance(choices, dict):
+            return cast("dict[str, argparse.ArgumentParser]", choices)
+    return {}
 
 
 def problem(command: str, *, is_line: bool) -> str | None:
