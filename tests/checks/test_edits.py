@@ -7,7 +7,8 @@ import pytest
 from kit import FOLDER, Fixture, fixture
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.checks.finding import article, listed, removal
+from robbdd_tools.base.removals import removal
+from robbdd_tools.checks.finding import article, listed
 from robbdd_tools.checks.lines import import_edit, import_removal, line_below, line_end
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.syntax import tree
