@@ -30,7 +30,7 @@ def test_a_survivor_is_named_at_its_template_with_a_clause_that_notices_it(bench
     clause = "holds(<robot> does not drop <thing>, from <evt-start> until <evt-end>)"
     assert f"    this clause notices it: {clause}\n" in done.stdout
     assert "no-release          1/1      ·          ·              ·        1        ·\n" in done.stdout
-    assert done.stdout.rstrip().endswith("1 of 2 faults are noticed in all executions")
+    assert done.stdout.rstrip().endswith("1 of 2 faults are noticed in every execution")
     report = (bench / "m.json").read_bytes()
     jsonschema.validate(json.loads(report), SCHEMA)
     assert (bench / "m.md").read_text(encoding="utf-8").startswith("### pick-place\n\n| fault | noticed |")

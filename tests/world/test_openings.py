@@ -168,7 +168,7 @@ def judged_at_start(made: Simulation, element: str) -> Verdict:
         (OpeningModel("gear"), "opens with the joint 'gear', but its file has lower_slide, upper_slide"),
         (OpeningModel(closed="5 mm"), "has 2 joints, not one: state them in its model"),
         (OpeningModel("upper_slide", "5 deg"), "is a slide: '5 deg' is an angle, not a length"),
-        (OpeningModel("upper_slide", "5 mm", "0.005 m"), "cannot be closed and open at the same position"),
+        (OpeningModel("upper_slide", "5 mm", "0.005 m"), "must differ"),
         (OpeningModel("upper_slide", "19 cm"), "counts as open before it no longer counts as closed"),
         (OpeningModel("upper_slide", "", "25 cm"), "is outside of the range of its joint"),
     ],

@@ -97,7 +97,7 @@ class ProbedTemplate:
 
 
 def with_probes(spec: ScenarioSpec) -> ScenarioSpec:
-    """Return an execution that is also judged by the probes for its first behaviour; without one, unchanged."""
+    """Return an execution with the probes of its first behaviour among its clauses; unchanged if it has none."""
     called = next((one for one in spec.clauses if isinstance(one.statement, BehaviourCall)), None)
     if called is None or not isinstance(called.statement, BehaviourCall):
         return spec

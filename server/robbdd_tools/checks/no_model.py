@@ -54,7 +54,7 @@ def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def gaps_of(scene: Site) -> list[Gap]:
-    """Return the elements of a scene without a model; empty if a model of the whole scene may contain them."""
+    """Return a scene's elements that have no model; none if a model of the whole scene may contain them."""
     if not isinstance(scene.tree, tree.Scene):
         return []
     unfit = [element for element in sorted(simulated_members(scene), key=lambda one: one.key) if not _fits(element)]

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 CODE = "not-simulated"
 _CATALOG = 'catalog "pick-place"'
 _GROUND_TRUTH = "simulation ground truth update-rate: 100 Hz"
-WITHOUT_MESSAGES = "policies that use its observations stay unknown; write 'simulation ground truth update-rate: … Hz'"
+WITHOUT_MESSAGES = (
+    "the clauses of policies that use this provider are unknown; "
+    "write 'simulation ground truth update-rate: 50 Hz' instead"
+)
 """The effect of a provider of ROS messages in a simulation, and its replacement."""
 WITHOUT_TOPIC = "the clause stays unknown if an execution uses this policy"
 """The effect of a ROS topic with verdicts in a simulation."""

@@ -28,6 +28,6 @@ def unverified_requirement(snapshot: Snapshot, file: FileAnalysis) -> Iterator[D
             name = one.symbol.path
             message = (
                 f"no scenario verifies the requirement '{name}': write 'verifies: <{name}>' in a user story, "
-                f"a scenario or its template, or 'verifies <{name}>' behind a clause"
+                f"a scenario or its template, or 'verifies <{name}>' after a clause"
             )
             yield Diagnostic(file.document.uri, one.span, Severity.WARNING, "unverified-requirement", message)

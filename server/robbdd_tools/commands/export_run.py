@@ -1,4 +1,4 @@
-"""``robbdd export``: write a stored run as bags of ROS 2, or as results for Allure Report."""
+"""``robbdd export``: write a stored run as ROS 2 bags, or as results for Allure Report."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ METHODS = ("cma-es", "sobol", "uniform")
 def add_falsify(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``robbdd falsify``."""
     parser.add_argument("path", metavar="FILE.study", type=Path)
-    text = "search at most N points (default: 200); the reduction of a failure needs some more"
+    text = "search at most N points (default: 200); reducing a failure takes some points beyond these"
     parser.add_argument("--budget", metavar="N", type=positive, default=200, help=text)
     text = "how points are chosen (default: cma-es, which needs robbdd-tools[search])"
     parser.add_argument("--method", choices=METHODS, default=METHODS[0], help=text)

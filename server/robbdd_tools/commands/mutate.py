@@ -123,7 +123,7 @@ def _print_unsound(unsound: Sequence[ScenarioResult]) -> None:
 def _print_matrix(matrix: FaultMatrix, template: ProbedTemplate) -> None:
     executions = max((row.executions for row in matrix.rows), default=0)
     counted = "1 execution" if executions == 1 else f"{executions} executions"
-    print_line(f"{printable(template.name)}: {counted} with each fault; violated clauses:")
+    print_line(f"{printable(template.name)}: {counted} with each fault; the clauses that it violates:")
     print_line("")
     for line in matrix_lines(matrix):
         print_line(printable(line))
@@ -134,5 +134,5 @@ def _print_matrix(matrix: FaultMatrix, template: ProbedTemplate) -> None:
         print_line(printable(line))
     caught = sum(row.status is FaultStatus.NOTICED for row in matrix.rows)
     possible = sum(row.executions > 0 for row in matrix.rows)
-    print_line(f"{caught} of {possible} faults are noticed in all executions")
+    print_line(f"{caught} of {possible} faults are noticed in every execution")
     print_line("")

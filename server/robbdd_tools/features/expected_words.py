@@ -64,9 +64,9 @@ def place_after(language: str, before: str) -> Place:
 
 
 def _without_faulty_line(language: str, before: str, offset: int) -> str | None:
-    """Return a text with the line blanked where the parser stopped, or ``None`` if the cursor is in that line.
+    """Return a text in which the line is blank at which the parser stopped; ``None`` if the cursor is in that line.
 
-    The head of an empty section above, such as ``Given:``, is blanked instead if the parser then gets further.
+    If the section above is empty and the parser gets further without its heading (``Given:``), that is blank instead.
     """
     start, end = before.rfind("\n", 0, offset) + 1, before.find("\n", offset)
     if end < 0 or not before[start:end].strip():

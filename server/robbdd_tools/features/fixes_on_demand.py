@@ -69,7 +69,7 @@ def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic
 
 
 def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield fixes that end a duration with another event. The events declared after its start event are first."""
+    """Yield fixes that replace the end event of a duration. Events declared after the start event come first."""
     site = _site(snapshot, file, diagnostic)
     for clauses in clauses_of(site.placed.declaration) if site is not None else ():
         for during in clauses.durations:

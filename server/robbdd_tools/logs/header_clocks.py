@@ -184,5 +184,7 @@ def _jump_words(_: str, called: str, back: float) -> str:
 def _other_words(topic: str, called: str, ahead: float, reference: str) -> str:
     side = "ahead of" if ahead > 0 else "behind"
     words = f"the headers of {called} are {abs(ahead) / 1e9:.3f} s {side} those of '{reference}'"
-    hint = f"state --clock {topic}={ahead / 1e9:.3f} if their clock is wrong, or --clock {topic}=0 if it is right"
+    hint = (
+        f"pass --clock {topic}={ahead / 1e9:.3f} (seconds) if their clock is wrong, or --clock {topic}=0 if it is right"
+    )
     return f"{words}, so they are not used: {hint}"

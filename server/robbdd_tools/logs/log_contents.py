@@ -1,4 +1,4 @@
-"""The contents of a log as plain data: poses of frames, texts, and the clock that stamps them."""
+"""The contents of a log as plain data: poses of frames, text messages, and the clock of their time stamps."""
 
 from __future__ import annotations
 

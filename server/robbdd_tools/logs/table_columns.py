@@ -52,7 +52,7 @@ def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> 
     known = {name: every[name] for name in DIMENSIONS if name in every}
     for name, title in stated.items():
         if name not in DIMENSIONS:
-            raise UnreadableLog(f"'{name}' is no column of a table: name one of {', '.join(DIMENSIONS)}")
+            raise UnreadableLog(f"'{name}' is no column of a table; the columns are {', '.join(DIMENSIONS)}")
         if (bare := _split(title)[0]) not in every:
             raise UnreadableLog(f"{place}: there is no column '{title}'; it has: {', '.join(every)}")
         known[name] = every[bare]

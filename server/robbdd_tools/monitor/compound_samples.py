@@ -55,7 +55,7 @@ class Samples:
     leaves: tuple[Leaf, ...]
 
     def leaf(self, row: int) -> Leaf:
-        """Return the predicate that decides at a sample."""
+        """Return the predicate whose margin is that of the definition at a sample."""
         return self.leaves[int(self.deciding[row])]
 
     def dimensions(self) -> NDArray[np.intp]:

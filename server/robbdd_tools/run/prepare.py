@@ -169,7 +169,7 @@ class _Part:
             yield from self._chosen(feature, written.story, written.scenario)
 
     def unwritten_specs(self) -> Iterator[ScenarioSpec]:
-        """Yield the scenarios to execute without writing their features, which they do not name."""
+        """Yield the scenarios to execute. No features are written, so the scenarios name none."""
         plan = self.plan
         for story in plan.stories:
             for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):

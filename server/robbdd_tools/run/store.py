@@ -2,8 +2,8 @@
 
 A stored run consists of the run folder (features, manifest, logs, moments, traces) and of rows in ``results.sqlite``,
 which is next to the folder ``runs``. The file ``run.json`` in the run folder records the input of the run. A run in a
-folder of its own has its database inside that folder. When a run ends, ``results.json`` is generated from the database.
-Earlier versions wrote only ``results.json``, so this file can still be read.
+folder outside of the store has its database inside that folder. When a run ends, ``results.json`` is generated from the
+database. Runs of earlier versions have only ``results.json``; they can still be read.
 """
 
 from __future__ import annotations

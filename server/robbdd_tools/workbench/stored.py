@@ -58,7 +58,7 @@ class PastRun(Recorded):
 
     @property
     def record(self) -> RunRecord:
-        """The record of the run: path, digest of the graph, seed, versions."""
+        """What identifies the run: path of the model, digest of its graph, seed, versions of the tools."""
         return self.place.record()
 
     @property

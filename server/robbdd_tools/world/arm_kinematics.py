@@ -35,7 +35,7 @@ ARMS = 16
 TURNS = 2 * np.pi
 """Limit (rad) of joints that turn without limits: cables of real ones do not allow more either."""
 VERTICAL, AHEAD = 0.999, 0.05
-"""Cosine of a vertical axis; bearing (rad) up to which a tool is straight ahead."""
+"""Cosine of the largest angle of a vertical axis; largest bearing (rad) of a tool that is straight ahead."""
 STRIDE = 0.3
 """Largest change of a joint in one iteration, rad."""
 SEEDS = 12

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 GRIP_FORCE = 15.0
 """Force (N) of each finger of a gripper whose file has no actuator."""
 GRIP_STIFFNESS, GRIP_DAMPING = 3000.0, 60.0
-"""Gains (N/m, N s/m) of such a gripper; for a rotating finger, times the square of its length."""
+"""Position and velocity gains (N/m, N s/m) of such a gripper; a rotating finger has them times its length squared."""
 SUCTION_FORCE = 42.0
 """Pull (N) of a suction cup whose file has no actuator: that of the catalog's cup."""
 

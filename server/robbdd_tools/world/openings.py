@@ -45,7 +45,7 @@ def opening_of(
     except QuantityError as error:
         raise SceneError(f"the joint of '{element}' is a {joint.kind}: {error}", origin=origin) from error
     if closed is not None and closed == opened:
-        raise SceneError(f"'{element}' cannot be closed and open at the same position", origin=origin)
+        raise SceneError(f"the closed and the open position of '{element}' must differ", origin=origin)
     ends = _ends(joint, closed, opened)
     if ends is None:
         return f"which end of the joint of {element} is the closed one is not known: {OVERRIDE}"

@@ -31,7 +31,7 @@ BEHIND = 0.05
 LOW = 0.02
 """Smallest height (m) of the tool above the support: the tips of fingers are below it."""
 ASIDE = 0.03
-"""Deviation (m) of the object from its line at which a push ends."""
+"""A push ends when the object deviates this far (m) from the line of the push."""
 SPACING = 0.01
 """Distance between the points of the tool's path, m."""
 

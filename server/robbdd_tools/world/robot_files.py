@@ -33,14 +33,14 @@ STIFFNESS, DAMPING = 2000.0, 100.0
 SLIDING = 10.0
 """Factor of these gains for a sliding joint (N/m, N s/m)."""
 FREQUENCY, RATIO = 20.0, 0.7
-"""Natural frequency (rad/s) and damping ratio of added servos that move a large inertia."""
+"""Natural frequency (rad/s) and damping ratio of the servos that are added to joints with a large inertia."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
 """Height (m, world frame) of the floor on which it stands."""
 TOOL = "robbdd-tool"
 ALIGNED = np.cos(np.radians(5.0))
-"""Cosine of the angle between the stated tool's y axis and the fingers' direction up to which it is kept."""
+"""The y axis of a stated tool is kept if the cosine of its angle to the direction of the fingers is at least this."""
 OUTWARDS = np.cos(np.radians(30.0))
 """Cosine of the angle between the stated tool's z axis and the direction out of the hand up to which it is kept."""
 ARMS = 16

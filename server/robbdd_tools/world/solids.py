@@ -105,7 +105,7 @@ def _hull(model: Any, geom: int, turn: FloatArray, center: FloatArray) -> Shape:
 def inertia_in(model: Any, data: Any, bodies: Sequence[int], root: int, shapes: Sequence[Shape]) -> Inertia | None:
     """Return how the mass of rigidly connected bodies is distributed, in the frame of ``root``.
 
-    ``None`` if it is that of the shapes, filled evenly, or if there is no mass.
+    ``None`` if it equals that of the shapes at uniform density, or if the bodies have no mass.
     """
     masses = model.body_mass[list(bodies)]
     mass = float(masses.sum())

@@ -51,10 +51,10 @@ def unit(evidence: Evidence, arguments: Arguments) -> str:
 
 
 def _pushed(evidence: Evidence, carrier: str, force: FloatArray) -> FloatArray:
-    """Return the length (m) of the path on which contact has moved a carrier up to each sample, shape (n,).
+    """Return the distance (m) by which contacts have moved a carrier up to each sample, shape (n,).
 
-    The path counts from a contact (``force``, N, at each sample) until the carrier is at rest without contact: what
-    was hit slides on.
+    Movement counts from a contact (``force``, N, at each sample) until the carrier is at rest and untouched, because an
+    object that was hit slides on.
     """
     import numpy as np
 

@@ -40,7 +40,7 @@ MEMBERSHIPS = {
     "workspace": ("bdd:SceneHasWorkspaces", "env:has-workspace", "-scene-has-ws"),
     "agent": ("bdd:SceneHasAgents", "agn:has-agent", "-scene-has-agn"),
 }
-"""Kind of an element → class, property and IRI suffix of the node that makes it a member of a scene."""
+"""Kind of an element → class, property and IRI suffix of the node that adds such elements to a scene."""
 JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
 NAMED_USE = "rbw:NamedPredicateUse"
 """Class of a clause, or of a condition, whose predicate the model itself defines."""

@@ -129,7 +129,7 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
 
 
 def _predicates(names: Names, left_out: dict[str, str]) -> Iterator[str]:
-    """Yield the declarations of the named predicates. All of them are declared first, since they use each other."""
+    """Yield the declarations of the named predicates. All names are known first: they may refer to each other."""
     declared: list[Iri] = []
     for node in names.records.instances("rbw:NamedPredicate"):
         try:
