@@ -66,7 +66,7 @@
     const left = wanted.length > shown.length ? ` The first ${MOST_ROWS} of ${wanted.length} are shown.` : "";
     fill(
       document.getElementById("matrix"),
-      `Executions in which each clause holds: ${shown.length} scenarios.${left}`,
+      `Executions in which each clause holds: ${shown.length} scenario${shown.length === 1 ? "" : "s"}.${left}`,
       clauses,
       shown.map((number) => scenarios[number]),
       shown.map((number) => cells[number]),

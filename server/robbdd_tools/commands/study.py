@@ -161,7 +161,8 @@ def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:
     specs = chain.from_iterable(cell.plan.specs(repeat=study.repeat) for cell in study.cells)
     expected = estimate(specs, store_beside(study.path).database, policy.jobs)
     basis = f" ({expected.basis})" if expected.seconds is not None else ""
-    return f"{study.name}: {expected}{cells}, {len(run.batches)} batches{basis}"
+    count = len(run.batches)
+    return f"{study.name}: {expected}{cells}, {count} {'batch' if count == 1 else 'batches'}{basis}"
 
 
 def _follow(run: StudyRun) -> int:
