@@ -58,7 +58,7 @@ class PastRun(Recorded):
 
     @property
     def record(self) -> RunRecord:
-        """What identifies the run: path of the model, digest of its graph, seed, versions of the tools."""
+        """The identity of the run: path of the model, digest of its graph, seed, versions of the tools."""
         return self.place.record()
 
     @property
