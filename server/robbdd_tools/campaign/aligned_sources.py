@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 def aligned(before: RunSource, after: RunSource) -> tuple[RunSource, RunSource, tuple[str, ...]]:
     """Return two sources whose executions can be matched, and what differs in their input, in words.
 
-    Between runs, nothing is changed. A study knows clauses by their names, so these identify them. What has one value
-    in each study, but not the same one, is the change that is examined: it does not distinguish executions. Raises
-    ``NothingShared`` if only one of the sources has several levels of a factor.
+    Two runs are returned unchanged. In a study, the names of clauses identify them. A factor or variable that has a
+    single value in each source, but a different one, is the change under examination. It is left out of the values, so
+    that executions match. Raises ``NothingShared`` if only one source has a factor, with several levels.
     """
     if not (before.is_study or after.is_study):
         return before, after, ()
@@ -38,7 +38,7 @@ def aligned(before: RunSource, after: RunSource) -> tuple[RunSource, RunSource, 
 
 
 def flipped(before: RunSource, after: RunSource) -> tuple[ExecutionChange, ...]:
-    """Return the executions of both sources with other verdicts."""
+    """Return the executions of both sources whose verdicts differ."""
     sides = [
         {execution_key(one): Executed(_values(one), one, trace=False) for one in source.results}
         for source in (before, after)
@@ -48,7 +48,7 @@ def flipped(before: RunSource, after: RunSource) -> tuple[ExecutionChange, ...]:
 
 
 def _levels(results: Iterable[ExecutionResult]) -> Mapping[str, Mapping[str, object]]:
-    """Return the values of each factor and variable, by their JSON."""
+    """Return the values of each factor and variable, with their JSON text as the key."""
     found: dict[str, dict[str, object]] = {}
     for result in results:
         for name, value in result.values.items():

@@ -32,15 +32,15 @@ STATUS = {Outcome.HOLDS: "passed", Outcome.VIOLATED: "failed", Outcome.UNKNOWN: 
 
 
 class NothingToExport(RobbddError):
-    """No execution of a run was chosen."""
+    """The choice contains no execution of the run."""
 
 
 def write_allure(run: PastRun, output: Path, names: Sequence[str] = ()) -> tuple[int, str]:
-    """Write the results of a run into a folder, of the scenarios or variants ``names`` only if there are any.
+    """Write the results of a run into a folder; ``names`` limits them to these scenarios or variants.
 
     Equal content gives equal files: names are derived from the run's record and its executions. Returns the number of
-    results, and why there are no pictures; empty if there are. Raises ``NothingToExport``, ``NoSuchRun`` and
-    ``OSError``.
+    results, and the reason why there are no pictures (empty if there are some). Raises ``NothingToExport``,
+    ``NoSuchRun`` and ``OSError``.
     """
     source = run_report(run)
     chosen = [one for one in source.results if not names or _is_named(one, names)]
@@ -74,7 +74,7 @@ def _document(
     end: tuple[str, float] | None,
     attachments: Sequence[Mapping[str, str]],
 ) -> Mapping[str, Any]:
-    # A scenario with the same values and repetition is the same test in every run, which makes its history.
+    # A scenario with the same values and repetition is the same test in every run, so Allure shows its history.
     same = json.dumps([result.variant, dict(result.values), result.execution, result.repetition], sort_keys=True)
     times: Mapping[str, int] = {} if end is None else _times(*end)
     violated = next((one for one in result.clauses if one.verdict is result.verdict), None)
@@ -135,7 +135,7 @@ def _details(clause: ClauseResult) -> Mapping[str, str]:
 
 
 def _times(ended: str, wall: float) -> Mapping[str, int]:
-    """Return begin and end of an execution in ms since 1970; empty if the stored end is no time."""
+    """Return begin and end of an execution in ms since 1970; empty if the stored end is not a valid time."""
     try:
         stop = round(datetime.fromisoformat(ended).timestamp() * 1000)
     except ValueError:

@@ -1,7 +1,6 @@
 """Execute parts of batches on the workers of a Dask cluster. No other module uses ``distributed``.
 
-The scheduler has only the parts in flight, and the files that they need. It may be restarted: what it had is sent
-again.
+The scheduler has only the parts in flight and the files that they need. If it is restarted, they are sent again.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ from robbdd_tools.workbench.parts import Part, PartResult, execute_part
 CONNECTING = 10.0
 """Seconds to connect to a scheduler."""
 ATTEMPTS = 3
-"""How often a part may end its workers, each time as often as Dask allows, until the study ends."""
+"""The study ends when Dask has given up a part this many times because the part killed its workers."""
 POLL = 0.05
-"""Seconds between two looks at the parts in flight, each of which takes about 30 s."""
+"""Seconds between two checks for finished parts. A part takes about 30 s."""
 LOOK = 2.0
-"""Seconds between two questions about the workers."""
+"""Seconds between two queries of the list of workers."""
 _RUNNING = "running"
 _MISSING = "the study needs Dask: install robbdd-tools[cluster]"
 
@@ -49,7 +48,7 @@ class _Flight:
 
 @dataclass(slots=True)
 class _Sent:
-    """The files of a parcel as a value in the cluster, which workers copy from each other, and its uses."""
+    """A parcel as a value in the cluster, and the number of parts that use it. Workers copy it from each other."""
 
     future: Any
     uses: int = 0
@@ -88,12 +87,12 @@ class Cluster:
 
     @property
     def in_flight(self) -> int:
-        """The number of parts that were sent and whose results are missing."""
+        """The number of parts that were sent and have no result yet."""
         return len(self._flights)
 
     @property
     def threads(self) -> int:
-        """The number of parts that the workers execute at a time, as it was known within the last seconds."""
+        """The number of parts that the workers execute at a time, at most some seconds old."""
         if monotonic() - self._looked > LOOK and self._client.status == _RUNNING:
             self._looked = monotonic()
             workers = self._workers()
@@ -107,7 +106,7 @@ class Cluster:
         return self._threads
 
     def work(self) -> Mapping[str, int]:
-        """Return the number of executions that each worker has, by its address, as it was within the last seconds.
+        """Return the number of executions that each worker has, by its address. The numbers may be some seconds old.
 
         Any thread may call it.
         """
@@ -127,9 +126,9 @@ class Cluster:
         self._flights.append(_Flight(part, used, prepared, self._submitted(part, used, prepared)))
 
     def results(self) -> Iterator[tuple[Part, PartResult]]:
-        """Wait for the result of a part, and yield it and others that are there.
+        """Wait for the result of a part; yield it, and other results that have arrived.
 
-        Yields nothing if no part is in flight, after a moment, and after ``cancel``.
+        Yields nothing after ``cancel`` or, after a short pause, if no part is in flight.
         """
         if not self._flights:
             self._cancelled.wait(POLL)
@@ -144,7 +143,7 @@ class Cluster:
             self._cancelled.wait(POLL)
 
     def _check(self, workers: Sequence[str]) -> None:
-        """Raise ``ClusterProblem`` with the names of the versions that differ on new workers."""
+        """Raise ``ClusterProblem`` if versions on new workers differ; the message names these versions."""
         if not workers:
             return
         found: dict[str, Any] = self._client.run(_versions_there, workers=workers, on_error="return")
@@ -176,7 +175,7 @@ class Cluster:
         return None
 
     def _again(self, flight: _Flight, error: BaseException | None) -> None:
-        """Send a part again that was lost, or that ended its workers."""
+        """Send a part again that was lost or that killed its workers."""
         if error is not None and type(error).__name__ != "KilledWorker":
             raise ClusterProblem(f"a worker cannot execute the study; it has {_unusable(error)}")
         flight.attempts += error is not None
@@ -207,7 +206,7 @@ class Cluster:
                     del self._sent[parcel.digest]
 
     def _forget_sent(self) -> None:
-        """Forget values that a scheduler has lost; those that it still has stay with the parts that use them."""
+        """Forget the values that the scheduler has lost. Values that it still has stay with the parts that use them."""
         lost = [name for name, sent in self._sent.items() if sent.future.status in ("cancelled", "lost", "error")]
         for name in lost:
             del self._sent[name]

@@ -1,4 +1,4 @@
-"""Execute a study on a cluster: parts of about 30 s of work are in flight, and their results come to the one store."""
+"""Execute a study on a cluster: send parts of about 30 s of work, and collect their results in the one store."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.run import Run
 
 WORK = 30.0
-"""Work of a part in s. Starting an agent takes 0.6 s of it."""
+"""Wall time (s) that a part is sized for. Starting an agent takes 0.6 s of it."""
 LEAST_WORK = 10.0
-"""Work of a part in s at the end of a study, where smaller parts let all workers end at the same time."""
+"""Minimum wall time (s) of a part at the end of a study. Small parts let all workers end at about the same time."""
 FIRST = 4
-"""Executions of the parts that are sent before the first result."""
+"""Number of executions of each part that is sent before the first result."""
 AHEAD = 2
-"""Parts in flight for each thread of a worker: one that is executed, and one that waits on the worker."""
+"""Parts in flight for each thread of a worker: the worker executes one, and another one waits there."""
 
 
 NOTHING = Parcel("", b"")
@@ -50,7 +50,7 @@ class _OpenBatch:
 
     - ``run``: its run; ``None`` if all its executions are finished.
     - ``used``, ``prepared``: the files that its parts need.
-    - ``tasks``: what was not sent yet; the scenarios of one task stay together.
+    - ``tasks``: the tasks that were not sent yet; the scenarios of one task stay together.
     - ``expected``: the number of its parts in flight.
     """
 
@@ -78,7 +78,7 @@ class Pace:
     executions: float = field(default=0.0)
 
     def add(self, seconds: float, executions: int) -> None:
-        """Add a finished part. Earlier parts count half as much with each later one."""
+        """Add a finished part. Each added part halves the weight of all earlier ones."""
         self.seconds = self.seconds / 2 + seconds
         self.executions = self.executions / 2 + executions
 
@@ -92,7 +92,7 @@ class Pace:
 
 
 class ClusterStudyRun(StudyRun):
-    """A study whose executions are made by the workers of a cluster. Its results equal those of this machine."""
+    """A study that the workers of a cluster execute. Its results equal those of an execution on this machine."""
 
     def __init__(
         self,

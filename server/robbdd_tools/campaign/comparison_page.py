@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
 
 MOST_FLIPS = 50
-"""So many executions that flipped are shown."""
+"""At most this many flipped executions are shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class TracedRun:
-    """A run with traces, and the index in it of each result of a source."""
+    """A run with traces. ``indices`` maps the index of a result in its source to the index in this run."""
 
     run: StoredRun
     results: Sequence[ExecutionResult]
     indices: Mapping[int, int]
 
     def result(self, index: int) -> ExecutionResult | None:
-        """Return the recorded result for the result number ``index`` of the source."""
+        """Return the recorded result of the source's result ``index``; ``None`` if it was not recorded."""
         found = self.indices.get(index)
         return None if found is None else self.results[found]
 
@@ -52,7 +52,7 @@ class Flip:
 def comparison_page(
     title: str, found: RunComparison, notes: Sequence[str], flips: Sequence[Flip], count: int, moments: Moments
 ) -> str:
-    """Return a comparison as HTML. ``flips`` are the first of ``count`` executions that flipped."""
+    """Return a comparison as HTML. ``count`` executions flipped; ``flips`` are the first ones."""
     return template("comparison.html").render(
         title=title,
         decision=str(found.decision),
@@ -72,7 +72,7 @@ def comparison_page(
 def flips_of(
     changes: Sequence[ExecutionChange], sides: tuple[Sequence[TracedRun], Sequence[TracedRun]], moments: Moments
 ) -> list[Flip]:
-    """Return the executions that flipped, with the replays of the first ``MOST_MOMENTS`` of them.
+    """Return the executions that flipped. The first ``MOST_MOMENTS`` have replays.
 
     ``sides`` are the recordings of the earlier and the later executions. Raises ``NoSuchRun``.
     """
@@ -105,7 +105,7 @@ def _recorded(side: Sequence[TracedRun], index: int) -> tuple[TracedRun, Executi
 
 
 def _moment(found: Sequence[tuple[TracedRun, ExecutionResult] | None], moments: Moments) -> tuple[str, str, str]:
-    """Add the replays of both sides around the violation of one of them, the later one first."""
+    """Add replays of both sides around a violation: the one in the later run or, without it, in the earlier run."""
     for violated in reversed(found):
         if violated is None:
             continue

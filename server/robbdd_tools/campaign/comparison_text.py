@@ -72,7 +72,7 @@ def conclusion(found: RunComparison) -> str:
         return f"accepted: no clause is worse than the gate allows (confidence {found.level:.0%})"
     if found.decision is Decision.WORSE:
         worse = [one for one in found.effects if one.change is Change.WORSE and not one.accepted]
-        # A clause says more than the row of all clauses.
+        # Name single clauses rather than the row of all clauses.
         worse = [one for one in worse if one.iri] or worse
         return f"worse: {', '.join(f'{one.name} ({_points(one)})' for one in worse)}"
     open_ = [one.name for one in found.effects if not one.accepted]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.study_content import Design, Range
 
 DIGITS = 6
-"""Decimal places of a value, relative to the width of its range: they are written into features and tables."""
+"""Decimal places of a value, relative to the width of its range. Values appear in features and tables."""
 
 
 def design_points(design: Design, ranges: Sequence[Range], seed: int) -> Points:
@@ -48,7 +48,7 @@ def _unit_points(design: Design, dimensions: int, seed: int) -> Sequence[Sequenc
 
 
 def value_at(one: Range, share: float) -> float:
-    """Return the value at a share of a range, without digits that mean nothing."""
+    """Return the value at a share of a range, rounded to meaningful digits."""
     width = one.high - one.low
     value = round(one.low + share * width, DIGITS - floor(log10(width)))
     return min(max(value, one.low), one.high)

@@ -1,4 +1,4 @@
-"""Check a study that is being edited: against the texts of an editor instead of the files on disk."""
+"""Check a study that is being edited, against the editor's texts instead of the files on disk."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class EditedModels(StudyModels):
 
 
 def study_diagnostics(project: Project, uri: str) -> list[Diagnostic]:
-    """Return the findings about a study that need its models. Those of its form are among the fast diagnostics."""
+    """Return the findings about a study that need its models. The fast diagnostics have the findings about its form."""
     document, path = project.snapshot().document(uri), uri_to_path(uri)
     content, faults = read_study(document)
     if faults or path is None:

@@ -1,4 +1,4 @@
-"""The effect of a change on one clause: pass rate and margin before and after, and what can be said of them."""
+"""The effect of a change on one clause: how its pass rate and its margin differ, with intervals and p-values."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def rate(judged: Sequence[Judged]) -> Rate:
 def rate_effect(clause: MatchedClause, level: float, *, paired: bool) -> RateEffect:
     """Return the change of the pass rate of a clause, with an interval of the confidence ``level``."""
     pairs = list(zip(clause.before, clause.after, strict=True))
-    # Each unknown verdict as it would speak for the change, and as it would speak against it.
+    # Count each unknown verdict once in favour of the change, and once against it.
     least = [(_holds(old, unknown=True), _holds(new, unknown=False)) for old, new in pairs]
     most = [(_holds(old, unknown=False), _holds(new, unknown=True)) for old, new in pairs]
     interval = _interval(least, level, paired=paired).hull(_interval(most, level, paired=paired))
@@ -145,7 +145,7 @@ def _probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> float:
 
 
 def _least_probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> float:
-    """Return the smallest p-value with the same number of flips; of independent runs, of executions that hold."""
+    """Return the smallest p-value with as many flips or, for independent runs, with as many executions that hold."""
     if paired:
         return paired_probability(0, sum(_flips(pairs)))
     (first, total), (second, _) = _sides(pairs)
@@ -160,7 +160,7 @@ def _margin_test(
     differences = [new - old for old, new in zip(before, after, strict=True)]
     spread = differences if paired else [*(old - before[0] for old in before), *(new - after[0] for new in after)]
     if len(set(spread)) == 1:
-        # All of them moved by the same: no spread to estimate.
+        # All margins moved by the same amount: there is no spread to estimate.
         moved = differences[0]
         return Interval(moved, moved), 1.0 if moved == 0.0 else 0.0
     stats = statistics()

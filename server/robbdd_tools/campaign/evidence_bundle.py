@@ -2,7 +2,7 @@
 
 A bundle is a ZIP archive:
 
-- ``bundle.json``: the SHA-256 of every other file, the versions, and which of the files is the model.
+- ``bundle.json``: the SHA-256 of every other file, the versions, and the name of the model file.
 - ``sources/``: the texts of the models and of what they import, and the files that the run used.
 - ``run/``: the record, the manifest, the results and the traces of the run.
 - ``graph.ttl``: requirements, scenarios, clauses, executions, verdicts (EARL) and traces (PROV) as one graph.
@@ -41,7 +41,7 @@ FORMAT = 1
 CONTENTS, GRAPH = "bundle.json", "graph.ttl"
 SOURCES, RUN = "sources", "run"
 _DATE = (1980, 1, 1, 0, 0, 0)
-"""The date of all entries: the earliest that a ZIP archive can have."""
+"""All entries have this date, the earliest one that a ZIP archive can have."""
 
 
 class NoEvidence(RobbddError):
@@ -59,7 +59,7 @@ class Bundle:
 def write_bundle(run: PastRun, output: Path, *, traces: bool = True) -> Bundle:
     """Write the bundle of a stored run. Raises ``NoEvidence``, ``NoSuchRun``, ``ModelErrors`` and ``OSError``.
 
-    The model must be that of the run: a bundle proves what the text of its requirements says.
+    The model must be unchanged since the run, so that the bundle is evidence for the text of its requirements.
     """
     place, record = run.place, run.record
     model = model_now(place)
@@ -101,9 +101,9 @@ def write_bundle(run: PastRun, output: Path, *, traces: bool = True) -> Bundle:
 
 
 def graph_of(model: Model, document: Mapping[str, Any], digests: Mapping[int, str]) -> str:
-    """Return the graph of a model of one file with the results and the traces of a run, as Turtle.
+    """Return the graph of a single-file model with the results and traces of a run, as Turtle.
 
-    The results stay in the graph of ``model``. Raises ``BadResults`` and ``ModelErrors``.
+    The results are added to the graph of ``model`` itself. Raises ``BadResults`` and ``ModelErrors``.
     """
     from robbdd_tools.graph.rdf.serialize import serialize
     from robbdd_tools.graph.write.run_results import add_results, add_traces
@@ -131,7 +131,7 @@ def _sources(model: Model, run: PastRun) -> dict[str, bytes]:
 
 
 def _entry(files: Iterable[str], model: Model) -> str:
-    """Return the name in the bundle of the file that was run: the longest ending of its path that the bundle has."""
+    """Return the bundle's name of the file that was run: the longest ending of its path that is in the bundle."""
     path = uri_to_path(model.runnable[0].uri)
     assert path is not None
     ending = path.resolve().as_posix()

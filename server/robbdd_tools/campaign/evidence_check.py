@@ -35,19 +35,19 @@ if TYPE_CHECKING:
 MOST_ENTRIES = 200_000
 """Limit of the number of files in a bundle."""
 MOST_CONTRADICTIONS = 20
-"""So many contradictions of a kind are listed."""
+"""At most this many contradictions of a kind are listed."""
 
 
 class NotABundle(RobbddError):
-    """A file is no bundle of evidence, or one of another version."""
+    """The file is not a bundle of evidence, or its version is not supported."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
     """One property of a bundle.
 
-    ``problems`` contradict it; ``unchecked`` is why it could not be checked, in whole or in part; ``detail`` says what
-    was checked.
+    ``problems`` contradict it. ``unchecked`` is the reason why some or all of it could not be checked. ``detail`` says
+    what was checked.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Verification:
 
 
 def verify_bundle(path: Path, *, digest: str = "", user_code: bool = False) -> Verification:
-    """Check a bundle. ``digest`` is the one that it must have; with ``user_code``, users' code in it may be executed.
+    """Check a bundle. It must have the ``digest``, if given. With ``user_code``, its users' code may be executed.
 
     Raises ``NotABundle`` and ``OSError``.
     """
@@ -121,7 +121,7 @@ def _contents(archive: zipfile.ZipFile) -> Mapping[str, Any]:
 
 
 def _read(archive: zipfile.ZipFile, name: str) -> bytes:
-    """Return an entry. Raises ``KeyError``, and ``NotABundle`` if it is larger than any result."""
+    """Return an entry. Raises ``KeyError``, and ``NotABundle`` if the entry is too large for any result."""
     # No more than the stated size is unpacked, whatever the entry contains.
     limit = RESULT_SIZE.value()
     if archive.getinfo(name).file_size > limit:
@@ -162,7 +162,7 @@ class _Files:
         return Check("contents", f"{len(self._listed)} files have their SHA-256", tuple(problems))
 
     def results(self) -> tuple[ExecutionResult, ...]:
-        """Return the stated results; empty if they cannot be read."""
+        """Return the results in the bundle; empty if they cannot be read."""
         try:
             return execution_results(json.loads(load_text(self._folder / RUN / RESULTS, RESULT_SIZE)))
         except (OSError, ValueError, KeyError, TypeError):
@@ -180,7 +180,7 @@ def _is_inside(name: str) -> bool:
 
 
 def _derived(contents: Mapping[str, Any], folder: Path, *, user_code: bool) -> Iterator[Check]:
-    """Check what follows from other parts: the model's graph, the graph with results, and the verdicts."""
+    """Derive the model's graph, the graph with results and the verdicts from other parts, and compare them."""
     try:
         model = load_all([folder / str(contents.get("model", ""))])
         graph_digest = model.digest
@@ -220,7 +220,7 @@ def _graph(model: Model, document: Mapping[str, Any], folder: Path, run: PastRun
 
 
 def _judged(run: PastRun, model: Model, kept: list[int], finished: list[int], *, user_code: bool) -> Check:
-    """Judge the traces again by the model's clauses, and compare the verdicts and margins with the stated ones."""
+    """Judge the traces again by the model's clauses, and compare verdicts and margins with those in the bundle."""
     name = "verdicts"
     if not kept:
         return Check(name, "", unchecked="the bundle has no traces, so no verdict was judged again")

@@ -10,15 +10,15 @@ from itertools import combinations
 from robbdd_tools.campaign.rates import Interval, rate_interval, separate_interval
 
 LEAST = 0.1
-"""Weaker associations of two factors are not reported: samples have them by chance."""
+"""Associations of two factors below this Cramér's V are not reported, as samples have them by chance."""
 
 
 @dataclass(frozen=True, slots=True)
 class LevelEffect:
     """The executions with one level of a factor against all others.
 
-    ``holding`` of ``total`` hold, with the ``interval`` of that rate; ``difference`` is this rate minus that of the
-    other levels together, with its interval ``change``.
+    ``holding`` of ``total`` executions hold, and ``interval`` is the interval of this pass rate. ``difference`` is this
+    rate minus the pass rate of all other levels together, and ``change`` is the interval of the difference.
     """
 
     factor: str
@@ -35,8 +35,8 @@ class Confounding:
     """Two factors whose levels do not occur in all combinations, or not equally often.
 
     - ``strength``: Cramér's V, from 0 (independent) to 1 (a level of one determines that of the other).
-    - ``nested``: whether each level of the first factor occurs with one level of the second.
-    - ``inseparable``: whether this is so both ways, so that their effects are one effect.
+    - ``nested``: whether each level of the first factor occurs with only one level of the second.
+    - ``inseparable``: whether each factor is nested in the other, so that their effects cannot be separated.
     """
 
     factors: tuple[str, str]
@@ -46,9 +46,9 @@ class Confounding:
 
 
 def level_effects(name: str, levels: Sequence[str], of: Sequence[int], holds: Sequence[bool]) -> list[LevelEffect]:
-    """Return the effects of the ``levels`` of a factor.
+    """Return the effects of the ``levels`` of a factor. Raises ``StatisticsNotInstalled``.
 
-    ``of`` is the level of each execution, ``holds`` whether it holds. Raises ``StatisticsNotInstalled``.
+    ``of`` has the number of the level of each execution; ``holds`` is true for each execution that holds.
     """
     totals, holding = Counter(of), Counter(level for level, one in zip(of, holds, strict=True) if one)
     every, passed = len(of), sum(holds)
@@ -64,7 +64,7 @@ def level_effects(name: str, levels: Sequence[str], of: Sequence[int], holds: Se
 def confounded(names: Sequence[str], of: Sequence[Sequence[int]]) -> Iterator[Confounding]:
     """Yield the pairs of factors that are not balanced. ``of`` has the level of each execution for each factor.
 
-    If one factor is nested in the other, it comes first.
+    If one factor is nested in the other, the nested factor is the first of the pair.
     """
     for (one, first), (other, second) in combinations(zip(names, of, strict=True), 2):
         strength = _association(first, second)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class LevelRate:
     """The scenarios with one level of a factor.
 
-    ``words`` names factor and level. An unknown scenario is not among the ``holding`` ones.
+    ``words`` names factor and level. ``holding`` does not count unknown scenarios.
     """
 
     words: str

@@ -1,7 +1,7 @@
-"""Search a box for a failure with as few executions as possible, and move the failure as near to nominal as possible.
+"""Search a box for a failure with few executions, and move the failure as near to nominal as possible.
 
-Points are in the unit box of the ranges. The search is by CMA-ES (Hansen 2016, *The CMA Evolution Strategy*), or by
-uniform or quasi-random points to compare it with.
+Points are in the unit box of the ranges. The search uses CMA-ES (Hansen 2016, *The CMA Evolution Strategy*) or, for
+comparison, uniform or quasi-random points.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 CMA_ES, SOBOL, UNIFORM = "cma-es", "sobol", "uniform"
 METHODS = (CMA_ES, SOBOL, UNIFORM)
 SPREAD = 0.3
-"""Initial standard deviation of CMA-ES, as a share of each range: the box is about three of them wide."""
+"""Initial standard deviation of CMA-ES, as a share of each range. The box is about three deviations wide."""
 GENERATION = 8
 """Points of a generation of the other methods."""
 MOST_SUBSETS = 70
-"""So many sets of changed variables of one size are tried at most."""
+"""Sets of changed variables of one size are tried only if there are at most this many."""
 ROUNDS, PARTS = 3, 8
-"""The way from nominal to the failure is divided into parts, and the part with the first failure again."""
+"""In each round, the way from nominal to the failure is divided into parts. The part with the first failure remains."""
 
 Point = tuple[float, ...]
 
@@ -53,8 +53,9 @@ class Failure:
     """The result of a search.
 
     - ``first``: the first failure that was found, after ``searched`` points. ``None`` if there was none.
-    - ``nearest``: a failure with the fewest changed variables, as near to nominal as found; ``passing`` is the
-      nearest point between both that does not fail. ``evaluated`` counts all points.
+    - ``nearest``: a failure with the fewest changed variables, as near to nominal as was found.
+    - ``passing``: the point closest to ``nearest``, on the way from nominal to it, that does not fail.
+    - ``evaluated``: the number of all evaluated points.
     """
 
     first: Evaluation | None
@@ -68,7 +69,7 @@ Evaluate = Callable[[Sequence[Point]], Sequence[Evaluation]]
 
 
 def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = CMA_ES) -> Failure:
-    """Search for a failure with at most ``budget`` points, then shrink it with some more.
+    """Search for a failure with at most ``budget`` points, then shrink the failure with further points.
 
     The same seed gives the same points. Raises ``SearchNotInstalled`` and ``StatisticsNotInstalled``.
     """
@@ -110,7 +111,7 @@ def shrink(evaluate: Evaluate, nominal: Point, failure: Failure) -> Failure:
 
 
 def _subsets(nominal: Point, failing: Point) -> Iterator[list[Point]]:
-    """Yield the points that change only some variables to their failing values, the fewest first."""
+    """Yield groups of points in which only some variables have their failing values, the smallest sets first."""
     changed = [index for index, value in enumerate(failing) if value != nominal[index]]
     for size in range(1, len(changed)):
         kept = list(combinations(changed, size))

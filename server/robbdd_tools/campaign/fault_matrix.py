@@ -1,4 +1,4 @@
-"""Compare executions with a fault of the robot with the same ones without it: clauses that notice the fault."""
+"""Find the clauses that notice a fault of the robot, by comparing the same executions with and without the fault."""
 
 from __future__ import annotations
 
@@ -70,9 +70,10 @@ class FaultCell:
 class FaultRow:
     """A fault with one cell for each clause.
 
-    - ``executions``: those in which the fault occurs. ``noticed``: those of them in which a clause is violated.
+    - ``executions``: the number of executions in which the fault occurs.
+    - ``noticed``: how many of these executions violate a clause.
     - ``reason``: why the fault does not occur in other executions; empty if it occurs in all.
-    - ``proposals``: the probes that tell the executions with the fault from those without, and how.
+    - ``proposals``: the probes that separate the executions with the fault from those without, and how they do so.
     """
 
     fault: RobotFault
@@ -94,7 +95,7 @@ class FaultMatrix:
 
     @property
     def survivors(self) -> tuple[FaultRow, ...]:
-        """The faults that no clause notices in some execution."""
+        """The faults that remain unnoticed in some execution."""
         return tuple(row for row in self.rows if row.status in _SURVIVING)
 
 
@@ -108,8 +109,8 @@ def fault_matrices(
 ) -> list[FaultMatrix]:
     """Return a matrix for each template, in the order of the scenarios.
 
-    ``without`` are sound executions, ``with_faults`` the same with faults, and ``templates`` maps variants (IRIs) to
-    their templates.
+    ``without`` are sound executions, ``with_faults`` are the same executions with faults, and ``templates`` maps
+    variants (IRIs) to their templates.
     """
     known = {scenario_key(one.spec): one for one in without}
     groups: dict[str, list[ScenarioResult]] = {}
@@ -180,7 +181,7 @@ def _judged(iri: str, scenario: ScenarioResult) -> list[ClauseJudged]:
 
 
 def _own(scenario: ScenarioResult) -> Iterator[tuple[ClauseSpec, ClauseJudged]]:
-    """Yield the clauses of the model with their verdicts, without those that only measure."""
+    """Yield the clauses of the model with their verdicts, but not the probes."""
     return ((clause, _verdict(scenario, clause)) for clause in scenario.spec.clauses if clause.role != PROBE)
 
 
@@ -197,7 +198,7 @@ def _margins(scenario: ScenarioResult) -> list[float | None]:
 
 
 def _obstacle(scenario: ScenarioResult) -> str:
-    """Return why the fault of an execution cannot occur; empty if it can. The scene is sound without the fault."""
+    """Return the reason why the fault of an execution cannot occur; empty if it can. The scene without it is sound."""
     judged = [judged for _, judged in _own(scenario)]
     is_obstacle = bool(judged) and all(one.cause == Cause.SCENE for one in judged)
     return judged[0].reason if is_obstacle else ""

@@ -1,7 +1,7 @@
-"""Clauses that are measured besides those of the model, to propose those that would notice a fault.
+"""Probes: clauses that are measured in addition to the model's, to propose those that would notice a fault.
 
 A probe is judged like any other clause, in executions without and with the fault. It is proposed only if its verdicts
-separate the ones from the others.
+or measured values separate the executions with the fault from those without.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.plan import Plan
 
 CLEAR = 1.1
-"""Ratio of the measured values from which on a limit between them is proposed: chance separates few executions, too."""
+"""A limit is proposed only if the values on both sides of it have this ratio: chance, too, separates few executions."""
 AFTER, DURING, SOME_TIME, WHOLE = "after", "during", "some-time", "whole"
 
 
@@ -36,8 +36,10 @@ AFTER, DURING, SOME_TIME, WHOLE = "after", "during", "some-time", "whole"
 class Probe:
     """A clause to measure.
 
-    - ``slots``: maps slots of the predicate to slots of the behaviour. ``limit``: the slot of a limit, if there is one.
-    - ``limit_value``: a limit (SI) that is never decisive: the measured value is that limit minus or plus the margin.
+    - ``slots``: maps slots of the predicate to slots of the behaviour.
+    - ``limit``: the slot of a limit, if there is one.
+    - ``limit_value``: a limit (SI) so wide that it never decides; the measured value is this limit minus or plus the
+      margin.
     - ``text``: the clause in the model, with placeholders in braces; ``LIMIT`` depends on the task.
     """
 
@@ -97,7 +99,7 @@ class ProbedTemplate:
 
 
 def with_probes(spec: ScenarioSpec) -> ScenarioSpec:
-    """Return an execution with the probes of its first behaviour among its clauses; unchanged if it has none."""
+    """Add the probes of its first behaviour to an execution's clauses. Without a behaviour, return it unchanged."""
     called = next((one for one in spec.clauses if isinstance(one.statement, BehaviourCall)), None)
     if called is None or not isinstance(called.statement, BehaviourCall):
         return spec
@@ -160,7 +162,7 @@ def _times(spec: ScenarioSpec, call: BehaviourCall) -> dict[str, TimeConstraint]
 
 
 def _words(template: Template, curie: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """Yield the placeholders of clauses with the names in the template. The first behaviour names its arguments."""
+    """Yield each placeholder of a clause with its name in the template. The first behaviour names the arguments."""
     yield "begin", _local(curie(template.start))
     yield "over", _local(curie(template.end))
     behaviours = (one for one in every_clause(template.clauses) if isinstance(one, BehaviourClause))

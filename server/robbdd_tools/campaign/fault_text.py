@@ -19,14 +19,14 @@ KEEPS = "·"
 
 
 def matrix_lines(matrix: FaultMatrix) -> list[str]:
-    """Return the matrix as aligned lines: in how many executions each clause is violated."""
+    """Return the matrix as aligned lines. A cell has the number of executions in which the clause is violated."""
     rows = list(_table(matrix))
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def survivor_lines(matrix: FaultMatrix, template: ProbedTemplate, place: str) -> Iterator[str]:
-    """Yield each fault that some execution survives, with the clause that it moves most and a proposed clause."""
+    """Yield each fault that goes unnoticed in an execution, the clause that it moves most, and a proposed clause."""
     where = f"{place}: " if place else ""
     for row in matrix.survivors:
         missed = row.executions - row.noticed
@@ -112,7 +112,7 @@ def _cell(cell: FaultCell) -> str:
 
 
 def _most_moved(matrix: FaultMatrix, row: FaultRow) -> str:
-    """Return the clause whose smallest margin lost the largest share of it; empty if none lost any."""
+    """Return the clause whose smallest margin shrinks by the largest share; empty if no margin shrinks."""
     found: list[tuple[float, str]] = []
     for clause, cell in zip(matrix.clauses, row.cells, strict=True):
         if cell.before and cell.after is not None and 0.0 <= cell.after < cell.before:

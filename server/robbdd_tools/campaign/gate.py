@@ -1,4 +1,4 @@
-"""The change for the worse that a comparison accepts, as written by users."""
+"""The gate of a comparison: how much worse a clause may become, as written by users."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The accepted changes: ``common`` to all clauses, and of clauses ``by_name``, which come first."""
+    """The accepted changes: ``common`` ones for all clauses; those ``by_name`` of a clause take precedence."""
 
     common: tuple[Limit, ...] = ()
     by_name: Mapping[str, tuple[Limit, ...]] = field(default_factory=dict[str, tuple[Limit, ...]])

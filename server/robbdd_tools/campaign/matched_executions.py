@@ -1,4 +1,4 @@
-"""Match the executions of two runs: the same scenario with the same values, and its clauses on both sides."""
+"""Match the executions of two runs that have the same scenario and values, and their clauses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.run.readable import title
 from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
 
 EVERY_CLAUSE = "every clause"
-"""The name of the row that counts the executions in which all clauses hold."""
+"""Name of the row that counts the executions in which all clauses hold."""
 _BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
 
 
@@ -101,7 +101,7 @@ def _unshared(
 
 
 def execution_key(result: ExecutionResult) -> str:
-    """Return what identifies an execution in two runs."""
+    """Return the key by which an execution is found in another run."""
     return json.dumps([result.variant, dict(result.values), result.execution, result.repetition], sort_keys=True)
 
 

@@ -12,9 +12,9 @@ class Test:
     """A test.
 
     - ``probability``: its p-value.
-    - ``least``: the smallest p-value that it could have had with its number of flips, whatever their direction. An
-      exact test of few flips cannot reject, so it cannot raise a false alarm.
-    - ``data``: tests of the same data are one test.
+    - ``least``: the smallest p-value that is possible with its number of flips, in any direction. An exact test with
+      few flips cannot reject, so it cannot raise a false alarm.
+    - ``data``: tests with equal data count as one test.
     """
 
     probability: float
@@ -26,10 +26,10 @@ class Test:
 
 
 def corrected(tests: Sequence[Test], alpha: float) -> list[float]:
-    """Return the p-values corrected for their number, so that the probability of any false alarm is at most ``alpha``.
+    """Correct p-values for the number of tests, so that the probability of any false alarm is at most ``alpha``.
 
-    Tests that cannot reject are not counted (Tarone 1990), the others are corrected by Holm's method (1979). The number
-    of flips says nothing about their direction, so that leaving tests out by it does not raise the level.
+    Tests that cannot reject are not counted (Tarone 1990); the others are corrected by Holm's method (1979). A test is
+    left out by its number of flips, which does not depend on their direction, so this does not raise the level.
     """
     able = _able(tests, alpha)
     order = sorted({tests[index].probability for index in able})
@@ -47,7 +47,7 @@ def corrected(tests: Sequence[Test], alpha: float) -> list[float]:
 
 
 def _able(tests: Sequence[Test], alpha: float) -> frozenset[int]:
-    """Return the largest group of tests of which each could reject after a correction for their number."""
+    """Return the largest group of tests in which each test could still reject after correction for the group's size."""
     count = 1
     while True:
         able = [index for index, test in enumerate(tests) if test.least <= alpha / count]

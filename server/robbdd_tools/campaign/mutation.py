@@ -1,4 +1,4 @@
-"""Execute scenarios without and with faults of the robots. Executions that fail without a fault get none."""
+"""Execute scenarios without and with faults of the robots. Only executions that hold without a fault get faults."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Mutation:
-    """The executions of a plan with and without faults. Iterate over ``progress`` once; it is then complete.
+    """The executions of a plan with and without faults. They are complete after one iteration over ``progress``.
 
     - ``unsound``: executions with a clause that does not hold without any fault. They are not repeated with faults.
-    - ``ending``: why executions are missing; empty if none is.
+    - ``ending``: the reason why executions are missing; empty if none is missing.
     """
 
     plan: Plan

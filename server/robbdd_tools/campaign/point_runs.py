@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.run.run_policy import Policy
 
 NO_MARGIN = 1.0
-"""Robustness of an execution without any margin that decides: as far from failing as nominal."""
+"""Robustness of an execution in which no margin decides: it counts as being as far from failing as nominal."""
 
 
 class SearchEnded(RobbddError):
@@ -36,7 +36,7 @@ class SearchEnded(RobbddError):
 
 @dataclass(slots=True)
 class PointRuns:
-    """Executes points. ``repeat`` seeds, which follow from ``seed``, are used at each point: the same at all points.
+    """Executes points, each with the same ``repeat`` seeds, which follow from ``seed``.
 
     The robustness of an execution is the smallest margin of its clauses, each divided by its margin at the first
     evaluated point, so that margins of different units can be compared. An unknown verdict is no failure.
@@ -69,7 +69,7 @@ class PointRuns:
         return [self._evaluation(point, group) for point, group in zip(points, groups, strict=True)]
 
     def failing(self, point: Point, seed: int) -> tuple[int, list[ScenarioResult]]:
-        """Return how many executions at a point fail with seeds that follow from another one, and the executions."""
+        """Return how many executions at a point fail with seeds that follow from ``seed``, and the executions."""
         (group,) = self._executed([self.values(point)], seed)
         return sum(map(fails, group)), group
 

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 LEVEL = 0.95
-"""The confidence level of an interval that states no other one."""
+"""Default confidence level of an interval."""
 _EDGE = 1e-12
-"""The distance from a change at which the statistic is not defined."""
+"""Distance that is kept from a change at which the statistic is not defined."""
 
 
 class StatisticsNotInstalled(RobbddError):
@@ -89,7 +89,7 @@ def paired_interval(gained: int, lost: int, pairs: int, level: float = LEVEL) ->
 
 def _score(change: float, gained: int, lost: int, pairs: int) -> float:
     """Return Tango's statistic for a true change: its distance from the observed one in standard errors."""
-    # The share of losses that is most likely if the change is the true one solves 2n x² + linear x + constant = 0.
+    # If this change is the true one, the most likely share of losses solves 2n x² + linear x + constant = 0.
     linear = (2 * pairs - gained + lost) * change - gained - lost
     constant = -lost * change * (1.0 - change)
     losses = (math.sqrt(max(0.0, linear**2 - 8 * pairs * constant)) - linear) / (4 * pairs)
@@ -139,10 +139,10 @@ def executions_for_width(rate: float, width: float, level: float = LEVEL) -> int
 
 
 def pairs_needed(discordance: float, difference: float, power: float = 0.8, level: float = LEVEL) -> int:
-    """Return how many pairs of executions show a difference of pass rates by McNemar's test (Connor 1987).
+    """Return how many pairs of executions McNemar's test needs to show a difference of pass rates (Connor 1987).
 
-    ``discordance`` is the share of pairs that flip in either direction. The size of ``difference`` is at most that.
-    Raises ``ValueError`` for other numbers.
+    ``discordance`` is the share of pairs that flip in either direction. Raises ``ValueError`` unless the size of
+    ``difference`` is above 0 and at most ``discordance``, which is at most 1.
     """
     drop = abs(difference)
     if not 0.0 < drop <= discordance <= 1.0:
@@ -168,5 +168,5 @@ def executions_needed(rate: float, difference: float, power: float = 0.8, level:
 
 
 def _quantile(level: float) -> float:
-    """Return the quantile of the normal distribution that a two-sided interval reaches to."""
+    """Return the quantile of the normal distribution at the bound of a two-sided interval."""
     return float(statistics().norm.ppf(0.5 + level / 2))

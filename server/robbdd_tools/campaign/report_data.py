@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
 
 MOST_SHOWN = 20
-"""So many executions that do not hold are shown in full."""
+"""At most this many executions that do not hold are shown in full."""
 MISSING = "—"
-"""The level of an execution without the variable."""
+"""Shown as the level of an execution that does not have the variable."""
 _BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
 
 
@@ -56,7 +56,7 @@ class Counts:
 class ClauseRow:
     """A clause over all executions. ``least`` and ``middle`` are the smallest and the median margin in words.
 
-    ``vacuous`` is why it could not have failed in any execution; empty if it could.
+    ``vacuous`` is the reason why the clause could not have failed in any execution; empty if it could.
     """
 
     name: str
@@ -95,7 +95,7 @@ class FailedRow:
 
 @dataclass(frozen=True, slots=True)
 class Factor:
-    """A variable, or the variant, with its levels in words; ``of`` is the level of each execution."""
+    """A variable, or the variant, with its levels in words. ``of`` has the number of the level of each execution."""
 
     name: str
     levels: tuple[str, ...]
@@ -132,7 +132,7 @@ def factors(results: Sequence[ExecutionResult]) -> list[Factor]:
 
 
 def worst(results: Iterable[ExecutionResult]) -> list[ExecutionResult]:
-    """Return the executions to show in full, the worst first: violated before unknown, then by their margins."""
+    """Return the executions to show in full, worst first: violated before unknown, then the smallest margins."""
     return sorted((one for one in results if one.verdict is not Outcome.HOLDS), key=_rank)[:MOST_SHOWN]
 
 
@@ -153,7 +153,7 @@ def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> Clause
 
 
 def _with_variables(sentence: str, result: ExecutionResult) -> str:
-    """Replace the values of an execution by their variables."""
+    """Replace the values in a sentence by the names of their variables."""
     for name, value in result.values.items():
         variable, _, words = value_words(name, value).partition(" = ")
         sentence = re.sub(rf"(?<![\w<-]){re.escape(words)}(?![\w>-])", f"<{variable}>", sentence)

@@ -1,4 +1,4 @@
-"""The part of a report about factors: effects of their levels, what is confounded, and which scenarios are flaky."""
+"""The part of a report about factors: effects of their levels, confounded factors, and flaky scenarios."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class EffectRow:
 
 
 def effect_rows(factors: Sequence[Factor], results: Sequence[ExecutionResult]) -> list[EffectRow]:
-    """Return the levels of the factors against their other levels. Raises ``StatisticsNotInstalled``."""
+    """Compare each level of a factor with its other levels. Raises ``StatisticsNotInstalled``."""
     holds = [result.verdict is Outcome.HOLDS for result in results]
     shown = [one for one in factors if len(one.levels) <= MOST_LEVELS]
     return [_words(found) for one in shown for found in level_effects(one.name, one.levels, one.of, holds)]
@@ -106,7 +106,7 @@ def _varied(results: Sequence[ExecutionResult]) -> Set[str]:
 
 
 def _scenario(result: ExecutionResult, varied: Set[str]) -> str:
-    """Return the name of a scenario with those of its values that vary; all its repetitions share them."""
+    """Return the name of a scenario with those of its values that vary. All its repetitions have the same name."""
     shown = [value_words(name, value) for name, value in result.values.items() if name in varied]
     if result.execution:
         shown.insert(0, value_words("execution", result.execution))

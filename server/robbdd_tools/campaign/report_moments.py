@@ -1,4 +1,4 @@
-"""The moments at which clauses are violated, for a page: a picture, and the poses shortly before and after it."""
+"""The moments at which clauses are violated, for a page: a picture, and the poses shortly before and after."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
 
 BEFORE, AFTER = 3.0, 1.0
-"""Time that a replay shows before and after the moment, s."""
+"""A replay begins and ends this long (s) before and after the moment."""
 MOST_MOMENTS = 10
-"""So many executions of a page have a picture and a replay."""
+"""At most this many executions of a page have a picture and a replay."""
 MOST_BYTES = 3_500_000
-"""Limit of all pictures and replays of a page; those of later executions are left out."""
+"""Limit of all replays and pictures of a page in bytes; those of later executions are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Moment:
 
 
 class Moments:
-    """Collects the moments of a page. ``problem`` is why there are no pictures; empty if there are."""
+    """Collects the moments of a page. ``problem`` is the reason why pictures are missing; empty if none are."""
 
     def __init__(self) -> None:
         self.problem = ""
@@ -73,7 +73,8 @@ class Moments:
     def add_replay(self, run: StoredRun, index: int, at: float | None, what: str, label: str = "") -> int | None:
         """Add the replay of an execution around an instant (s; ``None``: its end) at which ``what`` happens.
 
-        Returns its number in the page; ``None`` if there is no trace, or no room for it. Raises ``NoSuchRun``.
+        Returns the number of the replay in the page, or ``None`` if there is no trace or no room for a replay. Raises
+        ``NoSuchRun``.
         """
         try:
             seen = trace_document(run, index)
@@ -140,18 +141,18 @@ class Moments:
 
 
 def instant_of(clause: ClauseResult) -> float | None:
-    """Return when a clause was violated, or else nearest to that (s, simulated); ``None`` if this is not known."""
+    """Return when a clause was violated or, if it was not, nearest to violation (s, simulated); ``None`` if unknown."""
     return next((time for time in (clause.at, clause.worst_at) if time is not None), None)
 
 
 def first_violation(result: ExecutionResult) -> tuple[int, ClauseResult] | None:
-    """Return the clause that is violated earliest, with its place; others often follow from it."""
+    """Return the clause that is violated earliest, with its position. Other violations often follow from it."""
     found = [(place, one) for place, one in enumerate(result.clauses) if one.verdict is Outcome.VIOLATED]
     return min(found, key=lambda one: inf if one[1].at is None else one[1].at, default=None)
 
 
 def _around(frames: Mapping[str, Any], at: float) -> Mapping[str, Any]:
-    """Return the frames from ``BEFORE`` until ``AFTER`` an instant, or the last ones before it."""
+    """Return the frames from ``BEFORE`` an instant until ``AFTER`` it or, if there are none, the last frame."""
     data = b64decode(frames["times"]["data"])
     times = struct.unpack(f"<{len(data) // 4}f", data)
     inside = [row for row, time in enumerate(times) if at - BEFORE <= time <= at + AFTER] or [len(times) - 1]

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 def report_page(source: ReportSource, moments: str = "", problem: str = "") -> str:
     """Return a report as HTML.
 
-    The page contains everything that it shows. ``moments`` is the JSON of ``Moments.document``, ``problem`` why
-    pictures are missing. Raises ``NoSuchRun`` and ``StatisticsNotInstalled``.
+    The page contains everything that it shows. ``moments`` is the JSON of ``Moments.document``; ``problem`` is the
+    reason why pictures are missing. Raises ``NoSuchRun`` and ``StatisticsNotInstalled``.
     """
     results = source.results
     summary = counts(result.verdict for result in results)
@@ -64,7 +64,7 @@ def template(name: str) -> Template:
     from markupsafe import Markup
 
     def shown(value: Any) -> Any:
-        """Escape what could control a terminal or hide text, in everything but the plots."""
+        """Escape characters that could control a terminal or hide text, in everything but the plots."""
         return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
     loader = PackageLoader("robbdd_tools.campaign", "")

@@ -1,4 +1,4 @@
-"""The contents of a report: a stored run or a study, as results with their environment."""
+"""The source of a report: the results of a stored run or of a study, with their environment."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 class ReportSource:
     """The contents of a report.
 
-    - ``state``: why it is not complete; empty if it is.
+    - ``state``: the reason why the results are incomplete; empty if they are complete.
     - ``environment``: names and values, in words.
-    - ``command``: returns the command that executes one of the results again; empty if there is none.
-    - ``curves``: returns the stored margins of one of the results over time, by feature line, and the feature lines
-      of its clauses; empty if none are stored.
+    - ``command``: returns the command that executes a result again; empty if there is none.
+    - ``curves``: returns the stored margins of a result over time, by feature line, and the feature lines of its
+      clauses; both are empty if nothing is stored.
     """
 
     title: str
@@ -40,7 +40,7 @@ class ReportSource:
 
 
 def run_report(run: PastRun) -> ReportSource:
-    """Return what the report of a stored run shows. Raises ``NoSuchRun``."""
+    """Return the source of the report of a stored run. Raises ``NoSuchRun``."""
     record = run.record
     rows = [("model", record.path), ("digest of its graph", record.digest), ("seed", str(record.seed))]
     rows += [("RobBDD", record.version), ("simulator", record.simulator), ("log", record.log)]
@@ -64,7 +64,7 @@ def run_report(run: PastRun) -> ReportSource:
 
 
 def study_report(name: str, store: StudyReader) -> ReportSource:
-    """Return what the report of a study shows; ``name`` is that of its file. Raises ``DatabaseProblem``."""
+    """Return the source of the report of a study; ``name`` is the name of its file. Raises ``DatabaseProblem``."""
     facts = store.facts()
     results = study_executions(store.rows())
     total = int(facts.get("total", len(results)))
@@ -80,9 +80,10 @@ def study_report(name: str, store: StudyReader) -> ReportSource:
 
 
 def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> ReportSource:
-    """Add what was recorded when some executions of a study were executed again. The run's folder may be removed after.
+    """Add the recordings of executions of a study that were executed again.
 
-    Their clauses have sentences, too. Raises ``NoSuchRun``.
+    These executions get curves, moments, and clauses with sentences. The run's folder may be removed afterwards. Raises
+    ``NoSuchRun``.
     """
     recorded = run_report(again.run)
     chosen = [recorded.results[index] for index in again.indices.values()]
@@ -104,6 +105,6 @@ def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> 
 
 
 def _with_sentences(stored: ExecutionResult, again: ExecutionResult) -> tuple[ClauseResult, ...]:
-    """Return the clauses with the names of the study's store, by which it counts them, and the rest of the run."""
+    """Return the run's clauses with the names that they have in the study's store, which identify them in a report."""
     pairs = zip(stored.clauses, again.clauses, strict=True)
     return tuple(replace(new, iri=old.iri, name=old.name) for old, new in pairs)

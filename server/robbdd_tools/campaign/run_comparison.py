@@ -121,11 +121,11 @@ class _Measured:
 
     @property
     def _verdicts(self) -> tuple[tuple[Outcome, ...], ...]:
-        """The verdicts of both runs, which are the same for all clauses together if one clause decides alone."""
+        """The verdicts of both runs. If one clause decides alone, the row of all clauses has the same ones."""
         return tuple(tuple(one.verdict for one in side) for side in (self.clause.before, self.clause.after))
 
     def _margin(self, direction: int) -> Test:
-        """Return the test of a margin that moved in a direction; missing margins show nothing."""
+        """Return the test of whether a margin moved in a direction. It shows nothing if margins are missing."""
         if self.margins is None or self.margins.missing or self.margins.interval == Interval(0.0, 0.0):
             return Test(1.0, 1.0)
         return Test(1.0 if self.margins.difference * direction <= 0 else self.margins.probability)
@@ -155,12 +155,12 @@ def _effect(
 
 
 def _identical(clause: MatchedClause, matched: MatchedRuns) -> bool:
-    """Whether both runs executed the same, with the same known verdicts and margins."""
+    """Whether both runs have the same executions with the same seeds, known verdicts and margins."""
     return matched.paired and clause.before == clause.after and rate(clause.before).unknown == 0
 
 
 def _within(one: _Measured, gate: Gate) -> bool:
-    """Whether the change is shown to be no worse than the gate accepts, which has to state a limit for the clause."""
+    """Whether the change is shown to be within the gate's limit; false if the gate states no limit for the clause."""
     share = gate.limit(one.clause.name)
     kept: list[bool] = [] if share is None else [one.rates.interval.low >= -share]
     size = gate.limit(one.clause.name, one.clause.unit) if one.clause.unit else None

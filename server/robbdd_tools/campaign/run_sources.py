@@ -1,4 +1,4 @@
-"""Find what is to be compared: stored runs, results files of ``robbdd run --json``, and studies."""
+"""Find the results to compare: stored runs, results files of ``robbdd run --json``, and studies."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class NotResults(RobbddError):
 class RunSource:
     """The results to compare.
 
-    - ``name``: where they are from. ``place``: the stored run, if it is one.
-    - ``is_study``: whether they are of a study, which knows its clauses by their names.
-    - ``study``: its file, if that was named.
-    - ``facts``: what a study used, by name: versions and digests.
+    - ``name``: the source in words. ``place``: the stored run, if the source is one.
+    - ``is_study``: whether the source is a study, in which names identify clauses.
+    - ``study``: the study's file, if the user named the file.
+    - ``facts``: the versions that a study used, and digests of its input, by name.
     """
 
     name: str
@@ -47,10 +47,10 @@ class RunSource:
 def run_source(word: str, path: Path, store: Path | None = None) -> RunSource:
     """Return the results that ``word`` names.
 
-    It is a results file (``.json``), a stored run's number or folder, ``latest``, or a study: its file (``.study``) or
-    the folder of its results, both optionally with levels of factors that its executions must have
-    (``cell.study:robot=panda,range=dense``). ``path`` is in the project, ``store`` another folder of runs or studies.
-    Raises ``NotResults``, ``NoSuchRun``, ``StudyProblem`` and ``DatabaseProblem``.
+    ``word`` is a results file (``.json``), a stored run's number or folder, ``latest``, or a study. A study is named by
+    its file (``.study``) or by the folder of its results. Levels of factors may follow, which its executions must have
+    (``cell.study:robot=panda,range=dense``). ``path`` is in the project; ``store`` is another folder of runs or
+    studies. Raises ``NotResults``, ``NoSuchRun``, ``StudyProblem`` and ``DatabaseProblem``.
     """
     named, levels = _levels_of(word)
     if names_study(named):
@@ -68,7 +68,7 @@ def stored_source(run: PastRun) -> RunSource:
 
 
 def _levels_of(word: str) -> tuple[str, Mapping[str, str]]:
-    """Split a study's name from the levels after it. A name with a colon stays whole if it has no levels."""
+    """Split the levels of factors from a study's name. A name stays whole if its colon is not followed by levels."""
     name, colon, text = word.rpartition(":")
     if not colon or not names_study(name):
         return word, {}
@@ -94,7 +94,7 @@ def _study(word: str, named: str, levels: Mapping[str, str], store: Path | None)
 
 
 def _with_level(word: str, results: Iterable[ExecutionResult], factor: str, level: str) -> tuple[ExecutionResult, ...]:
-    """Return the executions with a level of a factor. All of them have it, so it is left out of their values."""
+    """Return the executions with a level of a factor. As all of them have this level, their values leave it out."""
     results = tuple(results)
     names = dict.fromkeys(name for result in results for name in result.values)
     wanted = [name for name in names if factor in (name, variable_word(name))]

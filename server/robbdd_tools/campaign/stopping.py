@@ -1,4 +1,4 @@
-"""Rules that end a study early, decided from the executions of whole stages."""
+"""Rules that end a study early. They decide from the executions of whole stages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class UntilWidth:
     width: float
 
     def ruling(self, holding: int, total: int) -> Ruling | None:
-        """Return the decision from the executions so far; ``None`` for more executions."""
+        """Return the decision from the executions so far; ``None`` if more executions are needed."""
         if total == 0:
             return None
         found = rate_interval(holding, total)
@@ -44,16 +44,16 @@ class UntilWidth:
 class RatioTest:
     """Wald's sequential probability-ratio test (1945) of a pass rate of ``required`` against ``refused``.
 
-    A true rate of at most ``refused`` is taken for ``required`` with a probability of at most ``ERROR``, and a true
-    rate of at least ``required`` for ``refused``, too. This is approximate, as Wald neglects the excess over the
-    bounds. Between the two rates, either may be decided.
+    If the true rate is at most ``refused``, the test decides for ``required`` with a probability of at most ``ERROR``.
+    If it is at least ``required``, the test decides for ``refused`` with the same probability at most. Both bounds are
+    approximate, as Wald neglects the excess over the bounds. Between the two rates, the test may decide either way.
     """
 
     required: float
     refused: float
 
     def ruling(self, holding: int, total: int) -> Ruling | None:
-        """Return the decision from the executions so far; ``None`` for more executions."""
+        """Return the decision from the executions so far; ``None`` if more executions are needed."""
         ratio = holding * math.log(self.required / self.refused)
         ratio += (total - holding) * math.log((1.0 - self.required) / (1.0 - self.refused))
         bound = math.log((1.0 - ERROR) / ERROR)

@@ -1,4 +1,4 @@
-"""Execute some results of a study again, with traces, for a page that shows them."""
+"""Execute some executions of a study again, with traces, for a page that shows them."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 
 
 class NotAgain(RobbddError):
-    """Executions of a study ended early, or gave other verdicts."""
+    """Repeated executions of a study ended early, or their verdicts or margins differ from the study's."""
 
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """A run of some executions of a study. ``indices`` maps their index in the study to that in the run."""
+    """A run of some executions of a study. ``indices`` maps the index of each in the study to its index in the run."""
 
     run: PastRun
     indices: Mapping[int, int]
 
 
 def execute_again(path: Path, store: StudyReader, chosen: Collection[int], folder: Path, policy: Policy) -> list[Again]:
-    """Execute results of the study at ``path`` again, in run folders within ``folder``.
+    """Execute some executions of the study at ``path`` again, in run folders within ``folder``.
 
-    ``store`` has its results, and ``chosen`` are the indices of those to execute.
+    ``store`` has the results of the study, and ``chosen`` are the indices of the executions.
 
     Raises ``StudyProblem`` if the study or one of its files was changed, ``NotAgain`` if a verdict or margin differs,
     ``ModelErrors``, ``UserCodeRefused`` and ``OSError``.

@@ -19,8 +19,8 @@ class Batch:
     """The executions that are executed as one run: repetitions ``first`` to ``last`` of all scenarios of a cell.
 
     - ``number``: the number of the batch in the study (from 1).
-    - ``stage``: the batches with the same repetitions have the same number (from 1). A study is balanced, each cell
-      having the same repetitions, at the end of a stage only.
+    - ``stage``: the number of the stage (from 1). All batches of a stage have the same repetitions. Only at the end of
+      a stage is the study balanced, that is, each cell has the same repetitions.
     - ``size``: the number of its executions.
     """
 
@@ -32,7 +32,7 @@ class Batch:
     size: int
 
     def plan(self) -> Plan:
-        """Return the plan of the batch. It is to be run with the ``repeat`` of the study."""
+        """Return the plan of the batch. Run it with the ``repeat`` of the study."""
         plan = self.cell.plan
         return replace(plan, requests=tuple(self._limited(request) for request in plan.requests))
 

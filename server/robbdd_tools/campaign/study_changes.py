@@ -1,4 +1,4 @@
-"""Find what changed since a study began, so that results of different things are not mixed."""
+"""Find what changed since a study began, so that results of different models or files are not mixed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Remove what a study keeps besides its results: traces, runs of replayed executions, left folders of batches."""
+"""Remove everything but the results from a study's folder: traces, runs of replayed executions, leftover batches."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class Cleaned:
 
 
 def clean(folder: Path, *, failures_stay: bool = False, everything: bool = False) -> Cleaned:
-    """Remove traces and runs of a study, and folders of batches that are in its store already.
+    """Remove traces and runs of a study, and folders of batches whose results are already in its store.
 
-    With ``failures_stay``, only the traces of executions that hold are removed. With ``everything``, the results are
-    removed, too. Raises ``StudyProblem`` without results and while the study is executed, ``DatabaseProblem`` and
+    With ``failures_stay``, the traces of failures and the runs are kept. With ``everything``, the results are removed,
+    too. Raises ``StudyProblem`` if there are no results or a process executes the study, ``DatabaseProblem`` and
     ``OSError``.
     """
     if not has_results(folder):

@@ -1,4 +1,4 @@
-"""The stored executions of a study as results, so that what reads runs can read studies."""
+"""The stored executions of a study as results, so that code that reads runs can also read studies."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ _LEVEL = "level."
 def study_executions(rows: Iterable[Mapping[str, Any]]) -> tuple[ExecutionResult, ...]:
     """Return the executions in the ``rows`` of a study's store, in their order.
 
-    The ``index`` of each is its number in the study minus 1. A study stores names of clauses alone, so these take the
-    place of IRIs. Its factors are among the values.
+    The ``index`` of each is its number in the study minus 1. A study stores no IRIs of clauses, so their names replace
+    the IRIs. The study's factors are among the values.
     """
     return tuple(_executions(rows))
 

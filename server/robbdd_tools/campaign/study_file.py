@@ -1,4 +1,4 @@
-"""Load a ``.study`` file and the models that it imports, and find everything that would prevent its execution."""
+"""Load a ``.study`` file with the models that it imports, and find everything that would prevent its execution."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SUFFIX = f".{STUDY}"
 BATCH = 500
 """Default number of executions after which results are moved to the study's store."""
 MOST_CELLS = 1000
-"""Limit of the combinations of levels."""
+"""Maximum number of combinations of levels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Study:
-    """A study as it was loaded. ``findings`` has its errors and those of its models."""
+    """A loaded study. ``findings`` has its errors and those of its models."""
 
     path: Path
     document: Document
@@ -74,7 +74,7 @@ class Study:
 
     @property
     def repeat(self) -> int | None:
-        """The number of repetitions of each scenario; ``None`` takes it from the executions of the model."""
+        """The number of repetitions of each scenario; ``None`` if the executions of the model state it."""
         return self.content.whole("repeat")
 
     @property
@@ -117,7 +117,7 @@ class Study:
 
 
 class StudyModels(Protocol):
-    """Where a study's models are read from."""
+    """A source of a study's models."""
 
     def load(self, paths: Sequence[Path]) -> Model:
         """Return the models. Raises ``NotAModel``."""
@@ -129,7 +129,7 @@ class StudyModels(Protocol):
 
 
 class ModelsOnDisk(StudyModels):
-    """The models as they are stored."""
+    """Reads the models from the disk."""
 
     def load(self, paths: Sequence[Path]) -> Model:
         """Return the models."""
@@ -158,9 +158,10 @@ def load_study(path: Path) -> Study:
 
 
 class StudyLoader:
-    """Finds the combinations of the levels of a study whose form is free of errors.
+    """Finds the combinations of levels of a study without errors of form.
 
-    ``faults`` are its errors, and ``broken`` those of its models. ``model`` are its models, if they can be run.
+    ``faults`` are the errors of the study, and ``broken`` the errors of its models. ``model`` has the models, if they
+    can be run.
     """
 
     def __init__(self, path: Path, document: Document, content: StudyText, models: StudyModels) -> None:
@@ -252,7 +253,7 @@ class StudyLoader:
         return [(_levels(cell), self._selected(selection, cell)) for cell in product(*levels)]
 
     def _fits(self, selection: Selection, factor: Factor, level: Word) -> bool:
-        """Check one level alone, so that a finding is at its place."""
+        """Check one level alone, so that a finding points to this level."""
         if factor.implementation is None and not (self._folder / level.text).is_file():
             self._report(level.span, f"there is no file {level.text}")
             return False

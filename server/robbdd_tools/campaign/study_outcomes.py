@@ -29,11 +29,11 @@ class NoSuchFactor(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class OutcomeTable:
-    """How many executions ended how.
+    """The number of executions with each outcome.
 
     - ``factors``: the names of the factors.
-    - ``rows``: a combination of their levels, as words, for each row of ``counts``.
-    - ``outcomes``: for each column ``holds``, the name of the first violated clause, or ``unknown``.
+    - ``rows``: for each row of ``counts``, a combination of levels, as words.
+    - ``outcomes``: for each column of ``counts``, ``holds``, the name of the first violated clause, or ``unknown``.
     - ``counts``: executions, rows × columns.
     """
 
@@ -45,7 +45,7 @@ class OutcomeTable:
 
 @dataclass(frozen=True, slots=True)
 class Margins:
-    """The margins of a clause in executions that hold, in ``unit``, by the levels of a factor as words."""
+    """The margins of a clause, in ``unit``, in executions that hold, grouped by the levels of a factor (as words)."""
 
     clause: str
     factor: str
@@ -54,10 +54,10 @@ class Margins:
 
 
 def outcome_table(rows: Iterable[Row], by: Sequence[str] = ()) -> OutcomeTable:
-    """Count executions by the levels of some factors or variables, and by what decided them.
+    """Count executions by the levels of some factors or variables, and by outcome.
 
-    The first violated clause is the first in the order of the scenario, at which behave would stop. Without names, all
-    factors with several levels are used. Raises ``NoSuchFactor``.
+    The outcome of a violated execution is its first violated clause in the order of the scenario, where behave would
+    stop. Without names, all factors with several levels are used. Raises ``NoSuchFactor``.
     """
     found_levels = list(_executions(rows))
     bins = bins_of(levels for levels, _ in found_levels)
@@ -103,7 +103,7 @@ def margins(rows: Iterable[Row], clause: str, factor: str) -> Margins:
 
 
 def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, Any], str]]:
-    """Yield the levels of each execution, and what decided it."""
+    """Yield the levels of each execution, and its outcome."""
     for _, group in groupby(rows, key=lambda row: tuple(row[name] for name in _EXECUTION)):
         clauses = list(group)
         first = next((row for row in clauses if row["verdict"] == Outcome.VIOLATED), None)

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 FOLDER = Path(".robbdd") / "studies"
 RUNS = "runs"
-"""Folder of the runs that executed executions of a study again."""
+"""Folder of the runs in which executions of a study were replayed."""
 BATCHES = "batches"
-"""Folder of the batch that is executed."""
+"""Folder of the batches in progress."""
 
 
 class StudyProblem(RobbddError):

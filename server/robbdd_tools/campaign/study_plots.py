@@ -1,4 +1,4 @@
-"""Pictures of a study: how many executions ended how, and how margins are distributed (extra ``plots``)."""
+"""Pictures of a study: the counts of outcomes, and the distribution of margins (extra ``plots``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a study is: its verdicts so far, its speed, and the work of its workers."""
+"""The progress of a study: its verdicts so far, its speed, and the work of its workers."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Tally:
 
     @property
     def holding(self) -> int:
-        """The number of executions of which all clauses hold."""
+        """The number of executions in which all clauses hold."""
         return self.executions[Outcome.HOLDS]
 
     def add(self, scenario: ScenarioResult) -> None:
@@ -89,7 +89,7 @@ class StudyProgress:
 
 
 class WorkerState(NamedTuple):
-    """The state of a worker: its name, its work in words, and for how many s it has done so, if that is known."""
+    """The state of a worker: its name, its work in words, and how long it has done this work (s), if known."""
 
     name: str
     work: str

@@ -24,7 +24,7 @@ NEEDS_RANGE = "a design needs a range: write 'factor var <NAME>: from 0.1 to 0.5
 
 
 def form_faults(content: StudyText) -> Iterator[Fault]:
-    """Yield ranges without a design, a design without ranges, and settings that would break a design."""
+    """Yield faults of form: ranges without a design, a design without ranges, settings that would break a design."""
     design = content.design
     if design is None:
         if content.ranges:
@@ -42,7 +42,7 @@ def form_faults(content: StudyText) -> Iterator[Fault]:
 
 
 def range_faults(models: Iterable[AcceptanceModel], ranges: Iterable[Range]) -> Iterator[Fault]:
-    """Yield what prevents the ranges of a study from replacing the values of variables of its models."""
+    """Yield the faults that prevent a study's ranges from replacing the values of its models' variables."""
     every = [(model, variant) for model in models for story in model.stories for variant in story.variants]
     taken: dict[tuple[Iri, Iri], str] = {}
     for one in ranges:
@@ -103,7 +103,7 @@ def _units(dimensions: Iterable[str]) -> str:
 
 
 def _settings(variant: Variant, variable: Iri) -> Iterator[Setting]:
-    """Yield the configurations whose value is the variable."""
+    """Yield the settings (``has config``) whose value is the variable."""
     for clause in _fluents(variant):
         if clause.predicate == "has-config" and clause.arguments.get("value") == variable:
             try:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def study_rates(counts: Iterable[CombinationCount]) -> list[list[LevelRate]]:
-    """Return the rates of each factor that has several levels. The first entry is the rate of all executions.
+    """Return the rate of all executions, then the rates of each factor that has several levels.
 
     Many numeric values of a variable are grouped by ``value_bins``.
     """

@@ -37,7 +37,7 @@ class Chosen:
     - ``numbers``: their numbers in the study; empty for all.
     - ``failures``: only those that do not hold.
     - ``clause``: only those in which the clause of this name does not hold.
-    - ``first``: at most so many, in the order of the study.
+    - ``first``: at most this many, in the order of the study.
     """
 
     numbers: Sequence[int] = ()
@@ -84,7 +84,7 @@ class StudyReplay:
     def runs(
         self, executions: Sequence[StoredExecution], policy: Policy
     ) -> Iterator[tuple[Run, Sequence[StoredExecution]]]:
-        """Yield a run for each combination of levels, to be used as a context manager, and its executions.
+        """Yield a run for each combination of levels, with its executions. Use each run as a context manager.
 
         Raises ``StudyProblem``, ``UserCodeRefused`` and ``OSError``.
         """
@@ -118,7 +118,7 @@ class StudyReplay:
         return run
 
     def differences(self, run: Run, executions: Sequence[StoredExecution]) -> Mapping[int, str]:
-        """Return what differs from the study in words, by the numbers of the executions that differ."""
+        """Return how executions differ from the study, in words, by their numbers. Equal executions are missing."""
         numbers = {one.key: one.number for one in executions}
         found: dict[int, str] = {}
         for scenario in run.progress.scenarios:

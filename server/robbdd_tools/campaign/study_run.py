@@ -1,4 +1,4 @@
-"""Execute a study batch by batch. A study that ended early is resumed with the results of an uninterrupted one."""
+"""Execute a study batch by batch. A resumed study has the same results as an uninterrupted one."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ AGAIN = "start it again with --restart, which removes its results"
 class StudyRun:
     """A study in progress. Use it as a context manager and iterate over ``progress`` once.
 
-    After that, ``ending`` is the reason why executions are open; it is empty for a study that is complete, or that its
-    rule has stopped (``ruling``).
+    Afterwards, ``ending`` is the reason why executions are open. It is empty if the study is complete or if its rule
+    has stopped it (``ruling``).
     """
 
     def __init__(self, study: Study, folder: Path, policy: Policy, *, resumed: bool) -> None:
@@ -84,7 +84,7 @@ class StudyRun:
         self.close()
 
     def ruling(self) -> Ruling | None:
-        """Return the decision of the study's rule from all stored executions; ``None`` for no decision or no rule."""
+        """Return the decision of the study's rule on all stored executions; ``None`` without a decision or a rule."""
         finished, holding = self._stored()
         return None if self._study.stop is None else self._study.stop.ruling(holding, finished)
 
@@ -135,7 +135,7 @@ class StudyRun:
                 return
 
     def _removed_batches(self) -> frozenset[int]:
-        """Return the numbers of the stored batches, and remove what is left of their folders, but keep traces."""
+        """Return the numbers of the stored batches. Remove leftovers of their folders, but keep the traces."""
         done = self.store.batches()
         for place in filter(lambda one: one.folder.exists(), map(self._place, sorted(done))):
             with suppress(NoSuchRun, DatabaseProblem):
@@ -146,11 +146,11 @@ class StudyRun:
         return done
 
     def _begins_stage(self, batch: Batch) -> bool:
-        """Return whether a batch is the first one of a later stage than the first."""
+        """Return whether a batch is the first one of its stage; false in the first stage."""
         return batch.stage > 1 and self.batches[batch.number - 2].stage != batch.stage
 
     def _decided(self, batch: Batch) -> bool:
-        """Return whether the study stops before a batch, which it does only before the first one of a stage."""
+        """Return whether the rule stops the study before this batch. It can do so only at the beginning of a stage."""
         rule = self._study.stop
         if rule is None or not self._begins_stage(batch):
             return False
@@ -208,7 +208,7 @@ class StudyRun:
             trim_traces(self._folder, self.store.failing(traces_in(self._folder)), wanted.limit * MEGABYTE)
 
     def _is_finished(self, place: StoredRun) -> bool:
-        """Return whether a batch was executed, but its results were not stored."""
+        """Return whether a batch was executed, but its results are not yet in the study's store."""
         try:
             return place.began and place.status().state == FINISHED
         except NoSuchRun:
@@ -249,7 +249,7 @@ class StudyRun:
             raise StudyProblem(f"{reason}, or {AGAIN}")
 
     def _check_files(self, batch: Batch, place: StoredRun) -> None:
-        """Refuse a batch that uses other versions of users' files than the earlier batches of its cell."""
+        """Refuse a batch if users' files have changed since the earlier batches of its cell."""
         files = used_files(place)
         name = f"files {batch.cell.words}"
         known = self.store.fact(name)

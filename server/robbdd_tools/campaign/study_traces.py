@@ -1,4 +1,4 @@
-"""The traces that a study keeps: one MCAP file for each kept execution, up to a size."""
+"""The traces that a study keeps: one MCAP file per execution, up to a limit of size."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.study_content import KeptTraces
 
 TRACES = "traces"
-"""Folder of the traces of a study. The number of the execution names the file."""
+"""Folder of the traces of a study. Each file is named after the number of its execution."""
 MEGABYTE = 1_000_000
 
 
@@ -26,7 +26,7 @@ def kept_trace(folder: Path, number: int) -> Path:
 
 
 def traces_in(folder: Path) -> Mapping[int, int]:
-    """Return the sizes of the traces of a study in bytes, by the numbers of their executions, in their order."""
+    """Return the sizes in bytes of a study's traces, by the number of their execution, in increasing order."""
     found = {int(one.stem): one.stat().st_size for one in (folder / TRACES).glob("*.mcap") if one.stem.isdecimal()}
     return dict(sorted(found.items()))
 
@@ -36,7 +36,7 @@ def keep_traces(
 ) -> None:
     """Move wanted traces of a batch to the folder of its study. Raises ``OSError``.
 
-    ``numbers`` are those of the scenarios in the study. Calling it again has no effect.
+    ``numbers`` are the numbers of the scenarios' executions in the study. A second call has no effect.
     """
     for index, (scenario, number) in enumerate(zip(scenarios, numbers, strict=True)):
         trace = trace_file(batch, index)
@@ -48,8 +48,8 @@ def keep_traces(
 def trim_traces(folder: Path, failing: Collection[int], limit: int) -> None:
     """Remove traces that do not fit into ``limit`` bytes. Raises ``OSError``.
 
-    Traces of failures have precedence, then those of earlier executions. So equal studies keep the same traces, however
-    often they were interrupted.
+    Traces of failures are kept first, then traces of earlier executions. So equal studies keep the same traces, even if
+    they were interrupted.
     """
     sizes = traces_in(folder)
     used, is_full = 0, False
@@ -61,7 +61,7 @@ def trim_traces(folder: Path, failing: Collection[int], limit: int) -> None:
 
 
 def remove_traces(folder: Path, numbers: Iterable[int]) -> None:
-    """Remove the traces of some executions, and the folder of traces if it is empty then. Raises ``OSError``."""
+    """Remove the traces of some executions, and then the folder of traces if it is empty. Raises ``OSError``."""
     for number in numbers:
         kept_trace(folder, number).unlink(missing_ok=True)
     if not traces_in(folder):

@@ -9,7 +9,7 @@ from typing import Any
 from robbdd_tools.base.quantity_units import split_quantity
 
 MOST_LEVELS = 10
-"""A variable with more numeric values is grouped."""
+"""The values of a variable are grouped if it has more numeric values than this."""
 PARTS = 4
 """The number of groups."""
 
@@ -23,7 +23,7 @@ class Bins:
     unit: str = ""
 
     def word(self, value: Any) -> str:
-        """Return the bounds of the part in which a value is."""
+        """Return the bounds of the part that contains a value, in words."""
         value, _ = _number(value) or (self.low, "")
         width = (self.high - self.low) / PARTS
         part = min(int((value - self.low) / width), PARTS - 1)
@@ -32,7 +32,7 @@ class Bins:
 
 
 def _number(value: Any) -> tuple[float, str] | None:
-    """Return a number, or a quantity, as its number and its unit; ``None`` for any other value."""
+    """Return a value as number and unit (empty for a plain number); ``None`` if it is neither number nor quantity."""
     if isinstance(value, str):
         found = split_quantity(value)
         return None if found is None else (float(found[0]), found[1])
@@ -56,5 +56,5 @@ def bins_of(levels: Iterable[Mapping[str, Any]]) -> dict[str, Bins]:
 
 
 def in_order(words: Iterable[str], bins: Bins | None) -> list[str]:
-    """Return the words of levels: those of groups by their bounds, others in their order."""
+    """Return the words of levels in order: groups by their bounds, others as given."""
     return list(words) if bins is None else sorted(words, key=lambda word: float(word.partition(" ")[0]))
