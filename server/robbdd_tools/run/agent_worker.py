@@ -1,4 +1,4 @@
-"""Scheduler's view of one agent process: its scenario and its deadline."""
+"""One agent process as the scheduler sees it: its scenario and its deadline."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ GRACE = 0.5
 
 
 def grace(limit: float) -> float:
-    """Return the seconds that a process has beyond a time limit (s), of which they are a tenth at most."""
+    """Return the seconds that a process has beyond a time limit (s): at most a tenth of the limit."""
     return min(GRACE, limit / 10)
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Busy:
-    """The number of a process, the number of the scenario that it executes, and for how many s it has done so."""
+    """A busy process: its number, the number of its current scenario, and for how many s it has executed it."""
 
     number: int
     index: int
@@ -74,7 +74,7 @@ class AgentWorker:
         self.agent.execute(index)
 
     def release(self) -> None:
-        """Start the next scenario in ``following``; without one, mark the worker idle."""
+        """Start the next scenario in ``following``. If there is none, mark the worker idle."""
         self.index, self.deadline, self.started = None, inf, False
         if self.following:
             self.assign(self.following)
@@ -85,7 +85,7 @@ class AgentWorker:
         self.agent.kill()
 
     def misfit(self, message: RunMessage, specs: Sequence[ScenarioSpec]) -> str:
-        """Return the reason why the agent cannot have sent a message; empty if it can have sent it."""
+        """Return the reason why the agent cannot have sent a message; empty if it may have sent the message."""
         match message:
             case ClauseJudged(line=line) if line in self.judged:
                 return f"ignored another verdict on the clause of line {line}"

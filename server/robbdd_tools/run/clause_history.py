@@ -23,8 +23,8 @@ class ClauseRun:
     """The verdicts of one run on a clause.
 
     - ``began``: the time at which the run began (ISO 8601).
-    - ``counts``: the number of executions with each verdict. A clause that is repeated within an execution has its
-      worst verdict.
+    - ``counts``: the number of executions with each verdict. If a clause is repeated within an execution, its worst
+      verdict counts.
     - ``margin``: the smallest margin in ``unit`` (SI); ``None`` if no margin was measured.
     - ``worst``: the number of the execution with the worst verdict and, among these, the smallest margin.
     """

@@ -1,4 +1,4 @@
-"""Find the clauses that are unknown only because of another clause, which has the reason."""
+"""Find the clauses that are unknown only because of another clause."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Protocol
 from robbdd_tools.monitor.verdict import Cause, Outcome
 
 _WAITING = (Cause.NO_EVENT, Cause.UNREACHED)
-"""Causes of clauses that wait for something that never happened. Their reason ends with that of what stopped it."""
+"""Causes of clauses that wait for something that never happened. Their reason ends with the reason why it never did."""
 
 
 class JudgedClause(Protocol):
@@ -35,7 +35,7 @@ class JudgedClause(Protocol):
 class Consequence:
     """The clause of the same execution that is the cause of an unknown one.
 
-    ``position`` is its number, from 0, and ``same_reason`` is true if both are unknown for one reason.
+    ``position`` is the number of this clause, from 0. ``same_reason`` is true if both are unknown for the same reason.
     """
 
     position: int
@@ -44,7 +44,7 @@ class Consequence:
 
     @property
     def words(self) -> str:
-        """A text that names the cause and takes the place of the reason."""
+        """A text that names the cause. It is shown instead of the reason."""
         return f"unknown {'for the same reason as' if self.same_reason else 'because of'} {self.name}"
 
 

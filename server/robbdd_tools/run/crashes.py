@@ -54,7 +54,7 @@ class Crash:
 def take_crash(base: Path, folder: Path) -> Crash:
     """Read and delete the crash files of an agent process that worked in ``folder``.
 
-    ``base`` is the value of the environment variable ``CRASH``: the path with which the names of the crash files begin.
+    ``base`` is the value of the environment variable ``CRASH``: the common beginning of the paths of the crash files.
     """
     dumped, noted = _take(dump_file(base)), _take(call_file(base))
     code, file, line, *_ = (*noted.decode("utf-8", "replace").split("\0"), "", "", "")

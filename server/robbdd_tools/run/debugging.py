@@ -1,4 +1,4 @@
-"""Prepare a run for a debugger: its policy, its port, and the library in the agent's environment."""
+"""Prepare a run for a debugger: its policy, a free port, and a check that debugpy is installed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def pausing(policy: Policy) -> Policy:
 
 
 def free_port() -> int:
-    """Return a port of this machine that nobody uses at the moment."""
+    """Return a port of this machine that no process uses at the moment."""
     with socket.socket() as found:
         found.bind((DEBUG_HOST, 0))
         return found.getsockname()[1]

@@ -28,14 +28,12 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
 
     The execution emits the events of the template's duration. A behaviour's duration is emitted by the behaviour's
     first and last event. For any other event, the emitter is the behaviour event that the model states (``emits``), or
-    the behaviour event with the same name (``inner_event``). In a scenario that is ``linked`` to a node of a behaviour
-    tree, that node emits the duration, unless it is the root.
-
-    If a template has several behaviours, their events are distinguished by the IRIs of their clauses. An event that
-    ends one behaviour of a When and starts another one of it is emitted by the first, and a name that fits events of
-    several behaviours of a When fits none. In different parts of a template, behaviours may emit the same event. An
-    awaited event without an emitter is external: only a log can report it. An event that the template defines by
-    conditions is found in the trace.
+    the behaviour event with the same name (``inner_event``). If the scenario is ``linked`` to a node of a behaviour
+    tree, this node emits the duration, unless it is the root. If a template has several behaviours, the IRIs of their
+    clauses distinguish their events. If an event ends one behaviour of a When and starts another one, the first
+    behaviour emits it. If a name fits events of several behaviours of a When, it is used for none of them. In different
+    parts of a template, behaviours may emit the same event. An awaited event without an emitter is external: only a log
+    can report it. An event that the template defines by conditions is found in the trace.
     """
     template = variant.template
     bound = {template.start: "scenario-start", template.end: "scenario-end"}
@@ -86,7 +84,7 @@ def _bind_inner(
     whens: Iterable[tuple[BehaviourClause, ...]],
     linked: Linked | None,
 ) -> None:
-    """Add the emitters of events that a model states by ``emits``, or names as an event of a behaviour."""
+    """Add the emitters of events that the model states by ``emits``, or that have the name of a behaviour's event."""
     stated: dict[Iri, list[str]] = {}
     emitted: dict[str, list[str]] = {}
     ambiguous: set[str] = set()

@@ -10,7 +10,7 @@ from pathlib import Path
 from robbdd_tools.run.database import explained, read_database
 
 NEWEST = 200
-"""Executions of a variant that count; older ones may have executed another model."""
+"""At most this many executions of a variant count, the newest ones. Older ones may be of another model."""
 _QUERY = "SELECT wall FROM execution WHERE variant = ? ORDER BY id DESC LIMIT ?"
 
 

@@ -28,17 +28,17 @@ _CASE = re.compile(r"(?:[^\s:]*:)?(?P<variant>\S+) -- (?P<number>\d+)[^\[]*(?:\[
 _CLAUSE = re.compile(
     r"^(?P<sign>[✔✗?])(?P<said>.*?)  \[(?:Given|When|Then) (?P<sentence>[^\n]*)\]$", re.DOTALL | re.MULTILINE
 )
-"""A clause in a test case's output; only a reason may span several lines."""
+"""Matches a clause in a test case's output. Only the reason may span several lines."""
 _CONSEQUENCE = re.compile(r"unknown (?:because of|for the same reason as) ")
-"""How a JUnit report begins the text of a clause that is unknown because of another one; a reason follows a colon."""
+"""Matches how the JUnit text of a clause begins that is unknown because of another one. A reason follows a colon."""
 _MARGIN = re.compile(r" ([+−][\d.]+ [^\s:]+)")
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedCause:
-    """The clause that another clause is unknown because of.
+    """A clause that makes another clause unknown.
 
-    ``iri`` and ``position`` (its number) are ``None`` if the file lacks them. ``words`` name it.
+    ``iri`` and ``position`` (its number) are ``None`` if the file lacks them. ``words`` name the clause.
     """
 
     iri: str | None

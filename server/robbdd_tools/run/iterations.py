@@ -16,9 +16,9 @@ def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
 def iterations_of(scope: Scope, behaviours: Sequence[Scope], reach: Reach = None) -> tuple[int, ...]:
     """Return the numbers (from 1) of the first and the last iteration in the scope and the reach of a step.
 
-    If the scope contains no behaviour, the nearest outer scope that contains one is used. The result is empty for a
-    scenario with a single iteration, because all events of the scenario belong to it. If the parts in its reach contain
-    no behaviour, because all their loops are over empty sets, the number is that of no iteration.
+    If the scope contains no behaviour, the nearest outer scope that contains one is used. The result is empty if the
+    scenario has a single iteration, because all events of the scenario belong to it. If the parts in the step's reach
+    contain no behaviour, because all their loops are over empty sets, the numbers denote no iteration.
     """
     if reach is not None:
         first, last = reach

@@ -79,7 +79,7 @@ def trace_document(run: StoredRun, index: int) -> dict[str, Any]:
     """Return the JSON document of a trace. Raises ``NoTrace`` and ``NoSuchRun``.
 
     The document does not depend on the current text of the model. So its clauses have no ``source`` and no ``stale``;
-    instead, ``written`` holds the sentence of the step.
+    ``written`` has the sentence of the step instead.
     """
     specs, document = run.manifest().scenarios, run.results()
     results = document["scenarios"]
@@ -133,7 +133,7 @@ def _seen(run: StoredRun, index: int) -> dict[str, Any]:
 
 
 def scenario_entry(index: int, spec: ScenarioSpec, verdict: str, *, trace: bool) -> dict[str, Any]:
-    """Return the JSON of a scenario. ``trace`` is whether a trace of it can be shown."""
+    """Return the JSON of a scenario. ``trace`` is true if a trace of the scenario can be shown."""
     return {
         "index": index,
         "name": spec.name,

@@ -71,7 +71,7 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
     """Yield the outcome and the text of each clause: its sentence, margin, instant and reason.
 
-    A clause that is unknown because of another one names that one in place of the reason.
+    If a clause is unknown because of another clause, its text names this clause instead of the reason.
     """
     clauses = scenario.spec.clauses
     every = [scenario.judged.get(clause.line) or unjudged(clause) for clause in clauses]

@@ -30,7 +30,7 @@ MESSAGE_BEGIN = '{"type": '
 LONGEST = 1024 * 1024
 """Maximum bytes of a line on the message channel."""
 MAX_STRANGE_LINES = 20
-"""Number of stray lines, which are not messages, that a run reports for each process."""
+"""A run reports at most this many lines of each process that are not messages."""
 PATIENCE = 0.2
 """Seconds that agents have to stop by themselves."""
 _numbers = itertools.count(1)
@@ -124,7 +124,7 @@ class Agent:
             end_group(self._process)
 
     def ending(self) -> str:
-        """Describe how the process ended. The text is the reason for the verdicts of the clauses that it left open."""
+        """Describe how the process ended. The text becomes the reason of the clauses that the process left open."""
         self._log.wait(PATIENCE)
         tail = self._log.last_line()
         return f"the agent process ended unexpectedly with {self.exit()}" + (f": {tail}" if tail else "")
@@ -156,10 +156,7 @@ class Agent:
 
 
 def _decoded(line: str) -> RunMessage:
-    """Return the message that a line contains.
-
-    If other code printed text before it on the same line, split that off.
-    """
+    """Return the message that a line contains. Split off text that other code printed before it on the same line."""
     try:
         return decode(line)
     except ValueError:

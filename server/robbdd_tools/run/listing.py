@@ -31,8 +31,8 @@ class ListedClause:
 class ListedScenario:
     """Scenario ``number`` (from 1) of a variant.
 
-    ``varying`` are the values that differ between the scenarios of the variant, and ``shared`` are the values that all
-    of them have. Both are texts. ``clauses`` are in the order of judgement.
+    ``varying`` has the values that differ between the scenarios of the variant, and ``shared`` has the values that all
+    scenarios have in common. Both are texts. ``clauses`` are in the order of judgement.
     """
 
     number: int
@@ -61,7 +61,7 @@ def listed_scenarios(model: AcceptanceModel, variant: Iri, first: int, most: int
 
 
 def _varying(variant: Variant) -> frozenset[Iri]:
-    """Return the variables whose value differs between the scenarios. Only the ends of each choice are compared."""
+    """Return the variables whose value differs between the scenarios."""
     variation = variant.variation
     last = count(variation) - 1
     if last < 1:

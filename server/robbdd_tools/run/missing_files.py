@@ -11,11 +11,11 @@ from robbdd_tools.run.store import RESULTS, StoredRun
 from robbdd_tools.run.stored_results import finished_executions
 
 NAMED = 3
-"""Number of files that a message names."""
+"""A message names at most this many files."""
 
 
 def missing_parts(run: StoredRun) -> list[str]:
-    """Return one sentence for each missing part of a run; return none for a live run. Raises ``NoSuchRun``."""
+    """Return one sentence for each missing part of a run; no sentence for a live run. Raises ``NoSuchRun``."""
     try:
         finished = finished_executions(run.database, run.number)
     except DatabaseProblem as error:

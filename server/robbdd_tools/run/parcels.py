@@ -1,7 +1,7 @@
 """Pack a prepared run and the files that it uses, so that another machine can execute it.
 
-The files keep their places relative to each other: a folder on the other machine stands for the root of the file
-system, and paths in the manifest are moved into it. Messages about them have the original paths again.
+The files keep their places relative to each other: a folder on the other machine replaces the root of the file system,
+and the paths in the manifest point into this folder. Messages get the original paths back.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from robbdd_tools.run.prepare import FEATURES
 from robbdd_tools.run.used_files import imported_by_steps, used_paths
 
 _FAST = 1
-"""Level of compression: archives are made more often than they are sent."""
+"""Compression level: fast, because archives are packed more often than they are sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +47,9 @@ class Parcel:
 
 
 def pack_used(manifest: Manifest, folder: Path, more: Iterable[Path] = ()) -> Parcel:
-    """Pack the files that the scenarios of a run folder use, and ``more`` files and folders. Raises ``OSError``.
+    """Pack the files that a run folder's scenarios use, and ``more`` files and folders. Raises ``OSError``.
 
-    They are the files of ``used_files``, and those that steps of the model import.
+    The scenarios use the files that ``used_files`` finds, and the files that steps of the model import.
     """
     files = {*used_paths(manifest, folder), *imported_by_steps(manifest)}
     folders = {path.parent for path in files}
@@ -73,9 +73,9 @@ def pack_prepared(folder: Path) -> Parcel:
 
 
 def unpack(parcel: Parcel, folder: Path) -> Path:
-    """Unpack a parcel into a folder named after its digest, unless it is there. Return that folder. Raises ``OSError``.
+    """Unpack a parcel into a folder named after its digest, unless the folder exists. Return it. Raises ``OSError``.
 
-    Several threads and processes may unpack the same parcel at a time.
+    Several threads and processes may unpack the same parcel at the same time.
     """
     place = folder / parcel.digest
     if not place.is_dir():
@@ -103,13 +103,13 @@ class Moved:
     roots: Sequence[str]
 
     def move_manifest(self) -> None:
-        """Let the manifest name the files where they are now. Raises ``OSError``."""
+        """Rewrite the manifest so that its paths name the unpacked files. Raises ``OSError``."""
         path = self.folder / MANIFEST
         text = load_text(path, RESULT_SIZE)
         replace_file(path, self._moved(text))
 
     def restored(self, line: str) -> str:
-        """Return a message of an agent with the paths of the machine that packed the run."""
+        """Return an agent's message with the paths of the machine that packed the run."""
         return line.replace(str(self.folder), self.origin).replace(str(self.root), "")
 
     def _moved(self, text: str) -> str:
@@ -140,7 +140,7 @@ def _extract(content: bytes, folder: Path) -> None:
 
 
 def _packed(files: Sequence[tuple[str, Path]], folders: Sequence[str], roots: tuple[str, ...]) -> Parcel:
-    """Pack files, given by their names in the archive, always into the same bytes."""
+    """Pack files, given by their names in the archive. Equal files always give the same bytes."""
     content = io.BytesIO()
     digest = hashlib.sha256(json.dumps([*folders, *roots]).encode())
     with (
@@ -161,7 +161,7 @@ def _packed(files: Sequence[tuple[str, Path]], folders: Sequence[str], roots: tu
 
 
 def _absolute(path: Path) -> bytes:
-    """Return a manifest that names each model by its absolute path, as another machine has no common folder."""
+    """Return a manifest with absolute paths of models: relative ones mean nothing on another machine."""
     data = json.loads(load_text(path, RESULT_SIZE))
     for scenario in data["scenarios"]:
         if scenario.get("model") and not scenario["model"].startswith("file:"):
@@ -185,7 +185,7 @@ def _named(data: object) -> Iterator[Path]:
 
 
 def _below(link: Path, files: Iterable[Path]) -> Iterator[Path]:
-    """Yield the files in the folder that a link names; nothing for other folders."""
+    """Yield the files below the target of a link; nothing if the path is not a link."""
     target = link.resolve()
     if target != link:
         yield from (path for path in files if path.is_relative_to(target))

@@ -76,9 +76,10 @@ def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, in
 
 
 def render_robot(arm: str, output: Path) -> tuple[list[str], str]:
-    """Render one arm alone; return the lines of the report on it, and why there is no picture, empty if there is one.
+    """Render one arm alone. Return the lines of its report, and why there is no picture (empty if there is one).
 
-    ``arm`` is the path of an MJCF or URDF file or a name of the catalog. Raises ``NoPictures`` if it cannot be used.
+    ``arm`` is the path of an MJCF or URDF file or a name of the catalog. Raises ``NoPictures`` if the arm cannot be
+    used.
     """
     tried: list[str] = []
     for back_end in back_ends():
@@ -104,7 +105,7 @@ def _nothing_renders(tried: list[str]) -> str:
 
 
 def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
-    """Return the names of the pictures."""
+    """Render with the first back end that works, and return the names of the pictures."""
     arguments = (str(folder.absolute()), what, str(output.absolute()), *more)
     tried: list[str] = []
     for back_end in back_ends():

@@ -17,7 +17,7 @@ INK, LINE, GOOD, BAD = "#8a8f98", "#3f8fd6", "#2ea043", "#e5534b"
 LETTER = 5.6
 """Approximate width of a letter of the event names, pixels."""
 LEVELS = 2
-"""Rows for event names that would overlap on one."""
+"""Number of rows for event names, which would overlap in a single row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class _Frame:
 def plot(kept: Mapping[str, Any], line: int, operand: int | None = None) -> str | None:
     """Return the plot of the clause at a feature line as SVG, or ``None`` if there is nothing to plot.
 
-    ``kept`` are the curves that are stored with a trace. If the clause has several fluents, the deciding one, number
+    ``kept`` has the curves that are stored with a trace. If the clause has several fluents, the deciding one, number
     ``operand``, is plotted.
     """
     parts: Sequence[Mapping[str, Any]] = kept["clauses"].get(str(line), ())
@@ -102,7 +102,7 @@ def _curve(frame: _Frame, part: Mapping[str, Any]) -> str:
 
 
 def _decisive(frame: _Frame, part: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the deciding point in the window: the smallest margin, or the largest one if one sample suffices."""
+    """Yield the deciding point in the window: the smallest margin, or the largest one if it needs to hold only once."""
     if part["start"] is None:
         return
     inside = [

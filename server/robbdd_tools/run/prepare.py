@@ -48,8 +48,8 @@ class RunRequest:
     - ``executions`` selects among the executions of the model; ``None`` selects all.
     - ``repeat`` is the number of repetitions of each scenario; ``None`` takes the number from the execution, or 1.
     - ``only`` filters the scenarios that the other fields select.
-    - ``faults``: if there are any, each scenario is executed once with each of these faults of the robots.
-    - ``completed``: is called with each execution, and returns it with clauses to be measured besides.
+    - ``faults``: faults of the robots. If there are any, each scenario is executed once with each fault.
+    - ``completed``: a function that is called with each execution, and returns it with additional clauses to measure.
 
     The remaining fields are the model, its name in reports, the seed, and the variants to run (``None`` for all). If
     the model has executions, they define the run: each one executes the scenarios of its variant, and may set its own
@@ -102,7 +102,7 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
 
 
 def specs_of(requests: Sequence[RunRequest]) -> Iterator[ScenarioSpec]:
-    """Yield the scenarios that ``prepare_all`` specifies, without writing files. They name no feature."""
+    """Yield the scenarios as ``prepare_all`` specifies them, but without writing files. They name no feature."""
     return (spec for part in _parts_of(requests) for spec in part.unwritten_specs())
 
 

@@ -1,4 +1,4 @@
-"""Word the reasons and the clauses of a run for people: local names, the error first and its place last."""
+"""Format the reasons and clauses of a run for people: local names, the error first and its place last."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NO_FAULTS: Mapping[str, Fault] = {}
 
 
 def clause_title(clause: ClauseSpec) -> str:
-    """Return a text that names a clause: its name in the model, *the behaviour*, or its sentence in quotes."""
+    """Return a title of a clause: its name in the model, *the behaviour*, or its sentence in quotes."""
     return title(clause.name, clause.sentence)
 
 
@@ -38,7 +38,7 @@ def title(name: str, sentence: str) -> str:
 def readable(judged: ClauseJudged, spec: ScenarioSpec, faults: Mapping[str, Fault] = _NO_FAULTS) -> ClauseJudged:
     """Return a verdict whose reason has local names instead of CURIEs, and its place in a file at its end.
 
-    ``faults`` are the known errors in users' code by their ``id``; such an error takes the place of the reason.
+    ``faults`` are the known errors in users' code by their ``id``. If the verdict has one, it replaces the reason.
     """
     fault = faults.get(judged.fault)
     if fault is not None:

@@ -1,6 +1,6 @@
 """Write the results of a live run to the database, in one transaction for each finished execution.
 
-``Recording.take`` is called before a result is shown. So every result that is shown is already committed.
+``Recording.take`` must be called before a result is shown, so that every shown result is already committed.
 """
 
 from __future__ import annotations
@@ -108,8 +108,8 @@ class Recording:
     def take(self, message: RunMessage, host: str = "") -> bool:
         """Store a message. If it finishes an execution, that execution is committed on return.
 
-        ``host`` is the machine that executed it, unless it is this one.
-        Returns ``is_new(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator than before.
+        ``host`` is the machine that executed the scenario; empty for this machine. Returns ``is_new(message)``. Raises
+        ``OtherSimulator`` if a resumed run uses another simulator than before.
         """
         match message:
             case RunStarted():

@@ -136,7 +136,7 @@ def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterat
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
-    """The data, apart from values, that scenarios must have in common to be judged from one execution."""
+    """Scenarios must have these data, apart from values, in common to be judged from one execution."""
 
     scene: SceneModel
     implementation: Implementation | None = None

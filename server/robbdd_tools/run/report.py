@@ -16,11 +16,11 @@ from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 SIGNS = {Outcome.HOLDS: "✔", Outcome.VIOLATED: "✗", Outcome.UNKNOWN: "?"}
 MINUS = "−"
 MOST_DECIMALS = 6
-"""A smaller number is written with an exponent."""
+"""A number that needs more decimals is written with an exponent."""
 
 
 def plain_sentence(text: str) -> str:
-    """Return a step's sentence for display, without prefixes and quotes of names and without the word ``event``."""
+    """Return a step's sentence for display: names without prefixes and quotes, and without the word ``event``."""
     without_event = text.replace('event "', '"')
     return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
 
@@ -100,7 +100,7 @@ def failure_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str
 
 
 def reason_first(state: str, reason: str) -> str:
-    """Return one line with the reason for a state, if there is one, before the state."""
+    """Return a state as one line. A reason, if there is one, comes first."""
     return f"{' '.join(reason.split())} ({state})" if reason else state
 
 
@@ -110,7 +110,7 @@ def values_words(spec: ScenarioSpec) -> str:
 
 
 def value_words(name: str, value: object) -> str:
-    """Return a variable and its value as text, for example ``thing = cube0``. Both are given with their prefix."""
+    """Return a variable and its value as text, for example ``thing = cube0``. Both arguments have their prefix."""
     return f"{variable_word(name)} = {value_word(value)}"
 
 

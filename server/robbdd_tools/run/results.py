@@ -116,7 +116,7 @@ class RunResults:
         return found
 
     def vacuous(self) -> Mapping[str, str]:
-        """Map the IRI of each clause that could not have failed in this run to the reason."""
+        """Map the IRI of each clause that could not have failed in this run to the reason why it could not."""
         return self._vacuity.reasons()
 
     def _clause(self, index: int, line: int) -> ClauseSpec:
@@ -158,7 +158,7 @@ class RunResults:
 
 
 def unjudged(clause: ClauseSpec) -> ClauseJudged:
-    """Return the verdict on a clause that no message judged."""
+    """Return the verdict *unknown* of a clause that no message has judged."""
     return never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
 
 

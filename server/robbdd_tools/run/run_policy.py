@@ -16,9 +16,9 @@ TIMEOUT = 300.0
 class Policy:
     """The policy of a run.
 
-    It has the number of parallel processes, the wall time for each scenario in s, whether the first failure ends the
-    run, ``log_limit``, the maximum size of each process's log in bytes, the port of a debugger of Python code, and
-    whether a debugger controls the ``pausing`` of executions.
+    It states the number of parallel processes, the limit of wall time for each scenario in s, and whether the first
+    failure ends the run. ``log_limit`` is the maximum size of each process's log in bytes. It also states the port of a
+    debugger of Python code, and whether a debugger controls the ``pausing`` of executions.
     """
 
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
@@ -30,7 +30,7 @@ class Policy:
 
     @property
     def is_debugged(self) -> bool:
-        """Whether a person debugs the run, who needs as long as it takes."""
+        """Whether a person debugs the run, so that there is no time limit."""
         return self.debug is not None or self.pausing
 
     @classmethod

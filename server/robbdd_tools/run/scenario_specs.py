@@ -239,7 +239,7 @@ class SpecWriter:
         )
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:
-        """Return the elements that values and clauses use, and those objects among them that carry workspaces."""
+        """Return the elements that values and clauses use, and which of them are objects that carry workspaces."""
         terms = (*used_names(shared.clauses), *names_in_events(shared.defined))
         named = [iri for name in terms for iri in (name, *self._model.sets.get(name, ()))]
         used = {self._curie(str(name)) for name in (*extra, *named)}
@@ -272,8 +272,8 @@ def _givens(
 ) -> Iterator[tuple[Fluent, Values, bool]]:
     """Yield the unconditional fluents of ``Given``, and whether they belong to a later part of a body.
 
-    If the world contradicts one of them from the start, the scenario would test nothing. A thing that has been moved
-    by an earlier part does not start where a later part expects it.
+    If the world contradicts such a fluent from the start, the scenario would test nothing. Fluents of a later part are
+    marked, because an earlier part may move a thing to the place where the later part expects it.
     """
     numbers = part_numbers(clauses)
     count = count_of_parts(clauses, numbers)

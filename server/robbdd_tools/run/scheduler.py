@@ -1,7 +1,7 @@
-"""Distribute the scenarios of a run folder over several agent processes.
+"""Distribute the scenarios of a run folder among several agent processes.
 
-This module uses the standard library only. Existing process pools neither replace a hanging worker nor report which
-task killed a worker, and both are needed here.
+This module uses the standard library only. It needs to replace a hanging worker and to know which task killed a worker.
+Existing process pools can do neither.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.tasks import earlier_than, grouped
 
 ATTEMPTS = 3
-"""Number of processes in a row that may end before they start a scenario; then the run is given up."""
+"""The run is given up if this many processes in a row end before they start a scenario."""
 CANCELLED = "the run was cancelled"
 STOPPED = "not executed: the run was stopped at the first failure"
 

@@ -40,7 +40,7 @@ RECORD = "run.json"
 LOCK = "lock"
 """Lock file of a run folder, held while the run is live, and of the folder of all runs, held while one begins."""
 KEPT = 20
-"""Number of completed runs, and of others, that a store keeps; older ones are removed."""
+"""A store keeps this many complete runs, and as many incomplete ones. Older runs are removed."""
 LATEST = "latest"
 PATIENCE = 30.0
 """Seconds that a run waits for another one that is beginning."""
@@ -165,7 +165,7 @@ class StoredRun:
         replace_file(self.folder / RESULTS, printable_json(results, indent=1) + "\n")
 
     def discard(self) -> None:
-        """Remove the folder, because the run never began."""
+        """Remove the folder of a run that never began."""
         if self.lock is not None:
             self.lock.release()
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -13,7 +13,7 @@ from robbdd_tools.run.stored_results import DIED, RUNNING
 def make_ready(database: Path, live: Collection[int]) -> str:
     """Prepare a database for a new run; return a note for the user. Raises ``DatabaseProblem``.
 
-    ``live`` are the runs in progress. A damaged database is moved aside, unless one of them is writing to it. If an
+    ``live`` are the runs in progress. A damaged database is moved aside, unless a live run is writing to it. If an
     earlier run died, the whole database is checked.
     """
     try:

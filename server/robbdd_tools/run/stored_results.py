@@ -23,7 +23,7 @@ RUNNING, FINISHED, STOPPED, INTERRUPTED, FAILED = "running", "finished", "stoppe
 CAUSES = {STOPPED: Cause.STOPPED, INTERRUPTED: Cause.CANCELLED}
 """State of a run → cause of its missing executions."""
 DIED = "died"
-"""State of a run that is ``RUNNING`` in the database but whose lock is free."""
+"""State of a run that is ``RUNNING`` in the database although its lock is free."""
 _JUDGED = ("line", "verdict", "robustness", "unit", "at", "reason", "worst_at", "vacuous", "fault", "cause", "operand")
 """Columns of a clause that are fields of ``ClauseJudged``."""
 _ENDINGS = {

@@ -14,7 +14,7 @@ from robbdd_tools.run.database import DatabaseProblem, explained, read_database
 from robbdd_tools.run.study_schema import MIGRATIONS, NAME
 
 OUTCOMES = (Outcome.HOLDS, Outcome.VIOLATED, Outcome.UNKNOWN)
-"""Verdicts by their numbers in the database."""
+"""The verdicts; the position of each is its number in the database."""
 COLUMNS = ("number", "scenario", "variant", "variation", "execution", "repetition", "seed", "duration",
            "scenario_verdict", "clause", "verdict", "margin", "unit", "at", "reason")  # fmt: skip
 """Columns of an exported row, after the levels."""
@@ -83,7 +83,7 @@ class StudyReader:
         self.close()
 
     def fact(self, name: str) -> str | None:
-        """Return a fact about the study, such as the digest of its models; ``None`` if it was never noted."""
+        """Return a fact about the study, such as the digest of its models; ``None`` if it was never stored."""
         with explained(self.path):
             row = self._connection.execute("SELECT content FROM fact WHERE name = ?", (name,)).fetchone()
         return None if row is None else str(row[0])
@@ -113,7 +113,7 @@ class StudyReader:
         return [ClauseCount(*row) for row in self._rows(query)]
 
     def outcomes(self) -> Iterator[tuple[int, int, int]]:
-        """Yield the number of executions and of those that hold in each batch, after its number."""
+        """Yield for each batch its number, the number of its executions, and how many of them hold."""
         yield from self._rows("SELECT batch, count(*), sum(verdict = 0) FROM execution GROUP BY batch ORDER BY batch")
 
     def verdicts(self) -> Mapping[Outcome, int]:
@@ -141,12 +141,12 @@ class StudyReader:
         return [number for (number,) in self._rows("SELECT id FROM execution WHERE batch = ? ORDER BY id", (batch,))]
 
     def failing(self, numbers: Iterable[int]) -> frozenset[int]:
-        """Return those of some executions, given by their numbers, that do not hold."""
+        """Return the numbers of those of the given executions that do not hold."""
         query = "SELECT id FROM execution WHERE verdict != 0 AND id IN (SELECT value FROM json_each(?))"
         return frozenset(number for (number,) in self._rows(query, (json.dumps(list(numbers)),)))
 
     def judged(self, number: int) -> list[tuple[Outcome, float | None, float | None]]:
-        """Return verdict, margin and instant of each clause of an execution, which its number names."""
+        """Return verdict, margin and instant of each clause of the execution with this number."""
         query = "SELECT verdict, robustness, at FROM clause WHERE execution = ? ORDER BY position"
         return [(OUTCOMES[verdict], margin, at) for verdict, margin, at in self._rows(query, (number,))]
 

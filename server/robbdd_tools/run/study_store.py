@@ -1,7 +1,7 @@
-"""The store of one study: a database of finished executions that stays small with hundreds of thousands of them.
+"""The store of one study: a database that stays small with hundreds of thousands of finished executions.
 
-Texts that executions share (names, reasons, units, values of variables) are stored once. Executions arrive in batches,
-each of which is committed as a whole. Wall times and hosts may differ between equal studies; nothing else does.
+Texts that executions share (names, reasons, units, values of variables) are stored once. Executions arrive in batches.
+Each batch is committed as a whole. Wall times and hosts may differ between equal studies; nothing else does.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class StudyStore(StudyReader):
-    """The results of a study, to be continued. Every method raises ``DatabaseProblem`` if it cannot be used."""
+    """The results of a study, open for writing. Methods raise ``DatabaseProblem`` if the database cannot be used."""
 
     def __init__(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)

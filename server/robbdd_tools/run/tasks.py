@@ -1,4 +1,4 @@
-"""Group the scenarios of a run into tasks, each of which one agent executes."""
+"""Group the scenarios of a run into tasks. Each task is executed by one agent."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robbdd_tools.protocol.specs import Manifest
 
 
 def grouped(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
-    """Group the scenarios that share an execution. A group has the position of its first scenario."""
+    """Group the scenarios that share an execution. A group is at the position of its first scenario."""
     together: dict[int | str, list[int]] = {}
     for index in indices:
         tree = manifest.scenarios[index].tree

@@ -135,7 +135,7 @@ def _joined(scenes: list[SceneSpec]) -> SceneSpec:
 
 
 def _horizons(member: Member) -> Iterator[tuple[bool, float]]:
-    """Yield each time horizon of a member: whether it is before the event (*before*), and its length in s."""
+    """Yield each time horizon of a member: true if it lies before the event (*before*), and its length in s."""
     clauses = (*member.variant.template.clauses, *member.variant.clauses)
     yield from _clause_horizons(clauses, member.values)
     for policy in () if member.execution is None else member.execution.policies:

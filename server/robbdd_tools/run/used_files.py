@@ -32,7 +32,7 @@ def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
 
 
 def used_paths(manifest: Manifest, folder: Path) -> list[Path]:
-    """Return the paths of the files of ``digests`` that exist."""
+    """Return the paths of those files of ``digests`` that still exist."""
     return [path for path in _named(manifest, folder).values() if path.is_file()]
 
 
@@ -51,7 +51,7 @@ def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
 
 
 def added(known: Mapping[str, str], manifest: Manifest, folder: Path) -> list[Path]:
-    """Return the files that the manifest's scenarios would use now and that are not among those of ``digests``."""
+    """Return the files that the manifest's scenarios would use now, but that ``digests`` does not contain."""
     return [path for name, path in _named(manifest, folder).items() if name not in known]
 
 
@@ -120,7 +120,7 @@ def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:
 
 
 def _command_files(implementation: Implementation, model: str) -> Iterator[Path]:
-    """Yield the files in the model's folder that the command of a process names, and what Python files import."""
+    """Yield the files in the model's folder that the command of a process names, and the files that they import."""
     folder = _folder(implementation.origin, model)
     for word in command_words(implementation.name):
         path = folder / word
