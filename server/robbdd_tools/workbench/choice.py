@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class Listed:
     """Scenarios of one variant (its IRI) in a list.
 
-    - ``numbers``: the numbers of the scenarios (from 1); without them, all scenarios.
-    - ``execution``: the IRI of the execution that executes them; without it, any execution or none.
-    - ``repetitions``: the numbers of the repetitions (from 1); without them, all repetitions.
+    - ``numbers``: the numbers of the scenarios (from 1); if it is empty, all scenarios.
+    - ``execution``: the IRI of the execution that executes them; if it is missing, any execution or none.
+    - ``repetitions``: the numbers of the repetitions (from 1); if it is empty, all repetitions.
     """
 
     variant: str

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 
 class NoClause(RobbddError):
-    """No clause of the execution is at a place. The message gives the reason."""
+    """The execution has no clause at this place. The message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class DebugRequest:
-    """The execution to debug: the first one of those that are selected.
+    """The execution to debug: the first of the selected ones.
 
     ``variation`` and ``repetition`` are its numbers (from 1). With ``python``, a debugger of Python code can connect.
     """
@@ -56,7 +56,7 @@ class NamedPlace:
 
 
 class DebuggedScenario:
-    """One selected execution that has not begun.
+    """The selected execution before it begins.
 
     Raises ``ModelErrors``, ``NotAModel``, ``NothingToRun``, ``SelectionError``, ``SceneChoiceError`` and
     ``NoDebugger``.
@@ -118,7 +118,7 @@ class DebuggedScenario:
         return sorted({place.line for place, iri in self._clauses.get(path_to_uri(path), ()) if iri in judged})
 
     def title(self, clause: ClauseSpec) -> str:
-        """Return the name of a clause as in the model, such as that of its behaviour; without one, its sentence."""
+        """Return the name of a clause or its behaviour in the model; if it has no name, its sentence."""
         found = self._places.get(clause.iri)
         return plain_sentence(clause.sentence) if found is None else found.name
 
@@ -151,7 +151,7 @@ class DebuggedScenario:
 
 
 def clause_places(spec: ScenarioSpec, iris: frozenset[str]) -> Iterator[tuple[int, int | None]]:
-    """Yield the feature lines of clauses by IRI; for fluents of a group also their numbers in it."""
+    """Yield the feature line of each clause in ``iris``; for a fluent of a group in ``iris``, also its number there."""
     for clause in spec.clauses:
         if clause.iri in iris:
             yield clause.line, None
@@ -167,8 +167,8 @@ def scenario_values(spec: ScenarioSpec) -> dict[str, object]:
 def scene_document(run: Run, written: Mapping[str, Any], line: int | None = None) -> dict[str, Any]:
     """Return the debugged execution so far in the form of ``docs/schemas/trace.schema.json``.
 
-    The clauses have no places. ``written`` is what ``WriteScene`` has written, ``line`` the feature line of the clause
-    at which the execution has paused.
+    The clauses have no places. ``written`` is the output of ``WriteScene``, and ``line`` is the feature line of the
+    clause at which the execution has paused.
     """
     (spec,), parts = run.manifest.scenarios, written["parts"]
     entries = run.progress.scenario_json(0)["clauses"]

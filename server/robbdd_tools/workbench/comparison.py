@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """An execution in one of the runs. ``index`` is its number in the run, ``trace`` whether its trace is stored."""
+    """An execution in one of the runs. ``index`` is its number in the run; ``trace`` is true if its trace is stored."""
 
     index: int
     verdict: Outcome
@@ -60,7 +60,7 @@ class ExecutionChange:
 
     @property
     def flipped(self) -> bool:
-        """Whether both runs have the execution, with different verdicts on a clause or on the whole."""
+        """Whether both runs have the execution, with different verdicts on a clause or on the whole scenario."""
         return self.before is not None and self.after is not None
 
 

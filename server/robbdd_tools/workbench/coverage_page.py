@@ -30,7 +30,7 @@ small { opacity: .8; }
 def coverage_page(rows: Sequence[RequirementRow], *, links_only: bool) -> str:
     """Return a page that needs no other file, with a row for each requirement and a column for each scenario.
 
-    With ``links_only``, results are not known: a cell only states that the scenario verifies the requirement.
+    With ``links_only``, the page has no results: a cell only states that the scenario verifies the requirement.
     """
     scenarios = list(dict.fromkeys(cell.scenario for row in rows for cell in row.evidence))
     shown = sum(row.is_shown(links_only=links_only) for row in rows)

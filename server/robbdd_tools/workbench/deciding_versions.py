@@ -1,4 +1,4 @@
-"""Compare the versions of everything that decides results: on this machine and on the workers of a cluster."""
+"""Compare the versions that can change results on this machine with those on the workers of a cluster."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _version(name: str) -> str:
 
 
 def _code() -> str:
-    """Return the first digits of a digest of the package's source: a checkout has the version of its last release."""
+    """Return the start of a digest of the package's source, because a checkout has the version of its last release."""
     root = Path(__file__).resolve().parents[1]
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):

@@ -33,7 +33,7 @@ class EditedExecution:
 
     - ``index``: its number in the run.
     - ``stored``: its scenario when it was executed.
-    - ``spec``: the edited scenario, with the clauses that can be re-judged only; ``None`` if there is a ``reason``.
+    - ``spec``: the edited scenario with only those clauses that can be re-judged; ``None`` if there is a ``reason``.
     - ``reason``: why the trace is no evidence for any clause of the edited scenario.
     - ``refused``: the edited clauses that cannot be re-judged, each with the reason.
     """
@@ -73,7 +73,7 @@ def edited_executions(
 
 @dataclass(frozen=True, slots=True)
 class Edits:
-    """The edits of a scenario since its execution: a ``change`` by which the trace is no evidence, or clauses."""
+    """The edits of a scenario since its execution: a ``change`` that makes its trace no evidence, or edited clauses."""
 
     change: str
     judged: tuple[ClauseSpec, ...] = ()
@@ -81,14 +81,14 @@ class Edits:
 
 
 class Comparison:
-    """Compares scenarios with their stored executions; repetitions of a scenario, which have the same edits, once."""
+    """Compares scenarios with their stored executions; only once for all repetitions, as they have the same edits."""
 
     def __init__(self, file: ModelFile) -> None:
         self._file = file
         self._known: dict[tuple[str, int, str], tuple[ScenarioSpec, ScenarioSpec, Edits]] = {}
 
     def edits(self, spec: ScenarioSpec, stored: ScenarioSpec) -> Edits:
-        """Return the edits of a scenario, except those of its seed."""
+        """Return the edits of a scenario, except changes of its seed."""
         execution = "" if spec.execution is None else spec.execution.iri
         key = (spec.variant, spec.variation, execution)
         now, then = without_repetition(spec), without_repetition(stored)
@@ -119,7 +119,7 @@ def _specs_now(
 
 
 def _changed_files(known: Mapping[str, str], folder: Path, drafts: Mapping[str, str]) -> str:
-    """Return the reason why a run's traces are no evidence, if a file that it used has changed, also if unsaved."""
+    """Return why a run's traces are no evidence if a used file has changed, saved or not; empty if none has."""
     found = dict.fromkeys(changed(known, folder))
     for name, digest in known.items():
         path = (folder / name).resolve()
@@ -133,7 +133,7 @@ def _changed_files(known: Mapping[str, str], folder: Path, drafts: Mapping[str, 
 
 
 def _refusal(clause: ClauseSpec, spec: ScenarioSpec, file: ModelFile) -> str:
-    """Return the reason why an edited clause is not judged while editing: users' code would judge it."""
+    """Return why an edited clause is not judged while editing, namely if users' code judges it; else empty."""
     path = uri_to_path(file.uri)
     if path is not None and may_define(path, clause.sentence):
         return f"a step of the project judges it: {AGAIN}"

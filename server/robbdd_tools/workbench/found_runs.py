@@ -27,7 +27,7 @@ _LOG = logging.getLogger(__name__)
 class Seen:
     """The last run of a store that was read: its number (0 for none), and the time at which it began (ISO 8601).
 
-    Numbers restart in a store that was deleted. The time shows that its runs are others.
+    If a store is deleted, its numbers restart. The time then shows that the runs are different ones.
     """
 
     number: int = 0
@@ -52,7 +52,7 @@ class FoundRun:
 class ReadStore:
     """Results of the runs that have not been read before.
 
-    - ``newest``: the number of the newest run in the store, also of one in progress; 0 without runs.
+    - ``newest``: the number of the newest run in the store, including one in progress; 0 if there is no run.
     - ``is_replaced``: whether the runs that were read before no longer exist, because the store was deleted.
     """
 
@@ -65,7 +65,7 @@ class ReadStore:
 def read_store(store: RunStore, seen: Seen) -> ReadStore:
     """Read the runs after the run ``seen``.
 
-    A run that is in progress, and all later runs, are read only after that run has ended.
+    If a run is in progress, that run and all later ones are not read before it has ended.
     """
     try:
         began = starts(store.database)
@@ -90,7 +90,7 @@ def read_store(store: RunStore, seen: Seen) -> ReadStore:
 
 
 def _is_replaced(seen: Seen, runs: Sequence[StoredRun], began: Mapping[int, str]) -> bool:
-    """Return whether a store no longer has the run that was read last. Only old runs are removed automatically."""
+    """Return whether a store no longer has the run that was read last. A store itself removes only old runs."""
     return not runs or seen.number > runs[-1].number or began.get(seen.number, seen.began) != seen.began
 
 

@@ -52,7 +52,7 @@ def judged_scenario(
 
 
 def project_of(uri: str) -> str:
-    """Return the root folder of a document's project; empty for a document that is no file."""
+    """Return the root folder of a document's project; empty if the document is not a file."""
     path = uri_to_path(uri)
     return "" if path is None else str(project_root(path))
 
@@ -79,7 +79,7 @@ def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, share
 
 
 def with_cause(found: Judgement, because: Consequence | None, spec: ScenarioSpec) -> Judgement:
-    """Return a verdict with the clause of its scenario that is the cause, if there is one."""
+    """Return a verdict with its cause, if the cause is another clause of the scenario."""
     if because is None:
         return found
     return replace(found, because=spec.clauses[because.position].iri, because_words=because.words)

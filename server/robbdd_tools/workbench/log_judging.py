@@ -41,7 +41,7 @@ class NotOneScenario(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class LogNames:
-    """How the names and times of a log are read; see ``LogRequest``."""
+    """Settings for the names and times of a log; see ``LogRequest``."""
 
     frames: Mapping[str, str] = field(default_factory=dict[str, str])
     world: str = ""

@@ -1,4 +1,4 @@
-"""Read the uncertainty of the measurements of a log as users state it."""
+"""Parse the uncertainty of a log's measurements as users state it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ KEYS = {"length": OTHERS, "angle": "angle", "speed": "speed"}
 
 
 def read_uncertainty(text: str) -> tuple[str, float]:
-    """Return what ``[ELEMENT=]QUANTITY`` is about, and the quantity in the SI unit; see ``LogRequest.uncertainty``.
+    """Parse ``[ELEMENT=]QUANTITY``: return the key in ``LogRequest.uncertainty``, and the quantity in the SI unit.
 
     Raises ``QuantityError`` for another text.
     """

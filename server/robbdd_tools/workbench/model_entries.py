@@ -1,4 +1,4 @@
-"""Places of the entries of models in a ``.scenex``."""
+"""Find the places of the entries of models in a ``.scenex``."""
 
 from __future__ import annotations
 

@@ -49,8 +49,8 @@ class OnDemand:
     """Executes scenarios of a prepared run one at a time, in one agent process that is reused.
 
     Use it as a context manager; leaving the context ends the agent. ``begin`` begins a run, ``join`` joins a run that
-    another process has begun, and ``end_run`` ends it. ``first_agent`` is the number of the first agent; it must differ
-    for each process that executes scenarios of the run.
+    another process has begun, and ``end_run`` ends it. ``first_agent`` is the number of the first agent. It must be
+    different in each process that executes scenarios of the run.
     """
 
     def __init__(self, place: StoredRun, recording: Recording, timeout: float | None = None, first_agent: int = 1):

@@ -28,7 +28,7 @@ from robbdd_tools.syntax.study_content import ALL
 from robbdd_tools.workbench.deciding_versions import differences, versions
 
 _POLL = 0.5
-"""Seconds between two looks whether the work is still wanted."""
+"""Seconds between two checks whether the work is still wanted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Part:
     - ``origin``: the run folder of the batch on the machine that began the study.
     - ``versions``: the versions that the worker must have.
     - ``timeout``: the limit of wall time for one scenario in s.
-    - ``traces``: return the traces of ``failures``, or of ``all`` executions; empty for none.
+    - ``traces``: which traces to return: of ``failures``, or of ``all`` executions; empty for none.
     """
 
     batch: int
@@ -71,7 +71,7 @@ class PartResult:
 
 
 def execute_part(part: Part, used: Parcel, prepared: Parcel, folder: Path, wanted: Callable[[], bool]) -> PartResult:
-    """Execute a part. ``folder`` is the worker's own; the work ends early if ``wanted`` returns false.
+    """Execute a part in the worker's own ``folder``. The work ends early when ``wanted`` returns false.
 
     ``used`` is unpacked once and kept for other parts. Raises ``OSError``.
     """
@@ -113,7 +113,7 @@ def _traces(part: Part, messages: Iterable[RunMessage], folder: Path) -> Iterato
 
 
 def _forbid_user_code() -> None:
-    """Let neither this process nor its agents execute users' code, unless the worker's owner allows it."""
+    """Forbid users' code in this process and its agents, unless the worker's owner allows it."""
     if os.environ.get(WORKER_USER_CODE) != "allow":
         os.environ[NO_USER_CODE] = OWNER_FORBIDS
 

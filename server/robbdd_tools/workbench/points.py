@@ -1,4 +1,4 @@
-"""Give variables of scenarios other values than those of the model: the points of an experimental design."""
+"""Replace the model's values of variables of scenarios by the points of an experimental design."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robbdd_tools.protocol.specs import ScenarioSpec, plain_name
 from robbdd_tools.run.seeds import scenario_seed
 
 MOST_SCENARIOS = 1_000_000
-"""Limit of the scenarios of a variant whose values are points: they are in memory."""
+"""Limit of the scenarios of a variant whose values are points, because all of them are in memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +24,9 @@ class Points:
 
     - ``variables``: their names as in ``--where``: alone, with their template, or as a CURIE.
     - ``rows``: the values of one point each, in the order of the variables.
-    - ``levels``: of a grid, the values of each variable, whose combinations are the points; then ``rows`` is empty.
-    - ``units``: the unit of each variable. Values that are quantities in the model (``0.25 m/s``) are so in the points.
+    - ``levels``: for a grid, the values of each variable. Their combinations are the points, and ``rows`` is empty.
+    - ``units``: the unit of each variable. If the model's values are quantities (``0.25 m/s``), those of points are,
+      too.
     """
 
     variables: tuple[str, ...]
@@ -38,7 +39,7 @@ def with_points(model: AcceptanceModel, points: Points | None) -> AcceptanceMode
     """Return a model in which the points replace the values of the named variables.
 
     Each combination of the other variables' values is executed at each point. A variant that has only some of the
-    variables has these values of the points; one that has none of them is unchanged. Raises ``SelectionError``.
+    variables gets only their values. A variant that has none of them is unchanged. Raises ``SelectionError``.
     """
     if points is None:
         return model
@@ -81,7 +82,7 @@ def _at_points(model: AcceptanceModel, variant: Variant, points: Points) -> Vari
 
 
 def _projected(points: Points, columns: Sequence[int]) -> Iterator[tuple[float, ...]]:
-    """Yield the values of some of the variables."""
+    """Yield the points' values of some of the variables."""
     if points.levels:
         yield from product(*(points.levels[column] for column in columns))
     for row in points.rows:
@@ -91,14 +92,14 @@ def _projected(points: Points, columns: Sequence[int]) -> Iterator[tuple[float, 
 def _writer(
     variation: Product | Table, place: int, units: Sequence[str], column: int
 ) -> Callable[[float], float | str]:
-    """Return a function that writes a value as the model writes those of the variable: with a unit, or without."""
+    """Return a function that writes a value as the model writes the variable's values: with or without a unit."""
     cells = variable_cells(variation, place)
     unit = units[column] if units and any(isinstance(cell, str) for cell in cells) else ""
     return (lambda value: f"{value!r} {unit}") if unit else lambda value: value
 
 
 def variable_cells(variation: Product | Table, place: int) -> Iterable[Cell]:
-    """Return the values of a variable, which is given by its place among the variables of the variation."""
+    """Return the values of a variable, given by its position in the variation."""
     return (
         cells_of(variation.choices[place]) if isinstance(variation, Product) else [row[place] for row in variation.rows]
     )
@@ -120,7 +121,7 @@ def _rows(
 
 
 def block_seeds(seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
-    """Return a function that gives an execution a seed that depends on its repetition alone.
+    """Return a function that gives an execution a seed that depends only on its repetition.
 
     A seed of the scene (``has config seed``) and that of a behaviour tree's execution stay as they are.
     """
@@ -134,8 +135,8 @@ def block_seeds(seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
 def common_seeds(variables: Sequence[str], seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
     """Return a function that gives an execution a seed that does not depend on the values of some variables.
 
-    Then the executions at all points differ in these values only. A seed of the scene (``has config seed``) and that of
-    a behaviour tree's execution stay as they are. ``variables`` are names as in users' code (``plain_name``).
+    So the executions at all points differ only in these values. Seeds of scenes (``has config seed``) and of executions
+    of behaviour trees do not change. ``variables`` are names as in users' code (``plain_name``).
     """
 
     def seeded(spec: ScenarioSpec) -> ScenarioSpec:

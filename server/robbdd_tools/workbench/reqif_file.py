@@ -24,7 +24,7 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "heading": ("reqif.chaptername", "heading", "object heading"),
     "source": ("source", "reqif.source", "reference"),
 }
-"""Meanings of attributes by their names in other tools, in lower case."""
+"""Maps each column to the names, in lower case, that other tools give the attribute."""
 WRITTEN = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.Text", "Source", "Scenarios", "Verdict")
 _BLOCKS = {"br", "p", "div", "li", "tr"}
 _DOCTYPE = re.compile(r"<!(?:DOCTYPE|ENTITY)", re.IGNORECASE)
@@ -118,7 +118,7 @@ _MODELS = (
     *("specification", "req_if_content", "reqif_header", "namespace_info", "core_content"),
 )
 _DATE = "2000-01-01T00:00:00Z"
-"""ReqIF demands dates of changes. They are not known, and equal requirements have equal files."""
+"""Date of all changes. ReqIF demands dates, but they are not known, and equal requirements must give equal files."""
 
 
 def _package(name: str, module: str) -> Any:
@@ -130,7 +130,7 @@ def _package(name: str, module: str) -> Any:
 
 
 def _unusable(file: Path, error: Exception) -> str:
-    """Return the message on what the package does not understand. Many of its errors carry the element of XML."""
+    """Return the message about a file that the package does not understand. Many of its errors name an XML element."""
     elements: list[Any] = [one for one in error.args if getattr(one, "sourceline", None)]
     if not elements:
         return f"{file}:1:1: this is no ReqIF: {str(error) or type(error).__name__}"
@@ -139,7 +139,7 @@ def _unusable(file: Path, error: Exception) -> str:
 
 
 def _objects(bundle: Any) -> Iterator[Any]:
-    """Yield the objects of all specifications in their order, then those that are in none, each once."""
+    """Yield the objects of all specifications in their order, then the objects outside of specifications, each once."""
     content = None if bundle.core_content is None else bundle.core_content.req_if_content
     every = {} if content is None else {one.identifier: one for one in content.spec_objects or ()}
     for specification in () if content is None else content.specifications or ():
@@ -178,7 +178,7 @@ def _row(file: Path, text: str, bundle: Any, found: Any, names: Names) -> Requir
 
 
 def _plain(attribute: Any) -> str:
-    """Return the text of a value. The elements of formatted text begin new lines."""
+    """Return the text of a value. Each element of formatted text begins a new line."""
     value = str(attribute.value).strip()
     if attribute.value_stripped_xhtml is None:
         return value

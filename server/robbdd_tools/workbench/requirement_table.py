@@ -38,7 +38,7 @@ class TableProblem(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ScenarioCell:
-    """The result of the latest executions of a scenario for a requirement; ``outcome`` is empty if it was never run."""
+    """The latest result of a scenario for a requirement. ``outcome`` is empty if the scenario was never run."""
 
     scenario: str
     outcome: str
@@ -70,21 +70,21 @@ class RequirementRow:
 
     @property
     def scenarios(self) -> tuple[str, ...]:
-        """The scenarios that verify it."""
+        """The scenarios that verify the requirement."""
         return tuple(cell.scenario for cell in self.evidence)
 
     @property
     def held(self) -> int:
-        """The number of executions that satisfied it."""
+        """The number of executions that satisfied the requirement."""
         return sum(cell.held for cell in self.evidence)
 
     @property
     def executions(self) -> int:
-        """The number of executions of its scenarios."""
+        """The number of executions of the requirement's scenarios."""
         return sum(cell.executions for cell in self.evidence)
 
     def is_shown(self, *, links_only: bool) -> bool:
-        """Return whether it is satisfied; with ``links_only``, whether some scenario verifies it."""
+        """Return whether the requirement is satisfied or, with ``links_only``, whether a scenario verifies it."""
         return bool(self.evidence) if links_only else self.verdict == "holds"
 
     @property
@@ -171,13 +171,13 @@ Cell = tuple[str, int, int]
 
 
 class Names:
-    """Names of requirements that are used already; each with the line where it was read."""
+    """The names of requirements in use, each with the line where it was read."""
 
     def __init__(self) -> None:
         self.lines: dict[str, int] = {}
 
     def free(self, name: str, line: int) -> str:
-        """Return a name and note it; empty if it is used, or no name of the language."""
+        """Record a name and return it; empty if the name is in use or not valid in the language."""
         if name in self.lines or not _NAME.fullmatch(name):
             return ""
         self.lines[name] = line
@@ -220,7 +220,7 @@ def _read_row(file: Path, places: Mapping[str, int], row: list[Cell], names: Nam
 
 
 def _cells(text: str, sign: str) -> Iterator[list[Cell]]:
-    """Yield the rows of a table. The csv module reads the same cells, but does not say where they are."""
+    """Yield the rows of a table. The csv module reads the same cells, but does not report their places."""
     field = re.compile(rf'"((?:[^"]|"")*)"|([^{sign}\n]*)')
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     row: list[Cell] = []

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.model import Model
 
 LOCK_PATIENCE = 1.0
-"""Seconds to wait for a lock that another process may hold only for a test."""
+"""Seconds to wait for a lock, because another process may hold it just to test it."""
 
 
 class CannotResume(RobbddError):
@@ -37,8 +37,8 @@ class CannotResume(RobbddError):
 def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None) -> StoredRun:
     """Return the run to resume. Raises ``NoSuchRun``.
 
-    This is the run that ``word`` names or, without a word, the latest unfinished run. With ``path``, it must be a run
-    of the model at this path.
+    This is the run that ``word`` names or, if ``word`` is missing, the latest unfinished run. With ``path``, it must be
+    a run of the model at this path.
     """
     if word != LATEST:
         place = store.find(word)

@@ -1,7 +1,7 @@
 """Run scenarios in the scene instances of a ``.scenex`` that the user names (``--scenex``).
 
-An execution of a ``.bddx`` names its scene instance; a scenario without one runs in that of the named files which
-instantiates its scene. An execution keeps its own.
+An execution of a ``.bddx`` names its scene instance and keeps it. A scenario without an execution runs in the scene
+instance of the named files that instantiates its scene.
 """
 
 from __future__ import annotations
@@ -49,14 +49,14 @@ def in_instances(
 
 
 def refuse_unused(models: Iterable[AcceptanceModel], instances: Sequence[SceneInstance]) -> None:
-    """Raise ``SceneChoiceError`` if no scenario of any model runs in a scene that is instantiated."""
+    """Raise ``SceneChoiceError`` if no scenario of any model runs in a scene that the instances instantiate."""
     variants = [variant for model in models for story in model.stories for variant in story.variants]
     if instances and not any(one.scene in variant.scenes for one in instances for variant in variants):
         raise SceneChoiceError(f"no scenario runs in a scene that is instantiated: there is {_listed(instances)}")
 
 
 def uses_instances(request: RunRequest) -> bool:
-    """Return whether a selected scenario has a chosen scene instance and no other one."""
+    """Return whether some selected scenario runs in one of the chosen scene instances."""
     model = request.model
     placed = {one.iri for story in model.stories for one in story.variants if one.instance and request.wants(one.iri)}
     own = {one.variant for one in request.chosen_executions() if one.scene is not None}
@@ -70,7 +70,7 @@ def files_of(scenarios: Iterable[ScenarioSpec]) -> tuple[Path, ...]:
 
 
 def instances_of(scenarios: Iterable[ScenarioSpec]) -> tuple[SceneInstance, ...]:
-    """Return the scene instances that a run chose, with the text that they had then."""
+    """Return the scene instances that a run chose, with their text at the time of the run."""
     chosen: Mapping[str, SceneInstance] = {
         spec.chosen_instance.iri: spec.chosen_instance for spec in scenarios if spec.chosen_instance is not None
     }

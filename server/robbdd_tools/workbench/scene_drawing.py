@@ -37,7 +37,7 @@ def drawing_request(snapshot: Snapshot, uri: str) -> DrawingRequest | None:
 
 
 def draw(asked: DrawingRequest) -> list[dict[str, Any]] | str:
-    """Return the drawn scene instances; a text if they cannot be drawn. This takes seconds."""
+    """Return the drawn scene instances, or the reason as text if they cannot be drawn. This takes seconds."""
     found = answer_of(DRAW, asked.request)
     if isinstance(found, str):
         return found

@@ -1,4 +1,4 @@
-"""Findings about scene instances for which the simulated world is set up: models and given poses."""
+"""Findings about models and given poses of scene instances. The simulated world is set up to find them."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 
 FIND = "robbdd_tools.agent.find_faults"
 KNOWN = {FaultKind.MODEL: {"model-file", "model-name", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
-"""Codes of the rules that report such faults at a better place: with one of these, such faults are not repeated."""
+"""Kind of fault → codes of the rules that report it at a better place. After such a finding, it is not repeated."""
 _TOKEN = re.compile(r"<[^>\n]*>|[\w.-]+|.")
 
 
 class SceneChecker:
-    """Finds faults of scene instances. Instances that have not changed, nor their files, are not examined again."""
+    """Finds faults of scene instances. An instance is examined again only if it or its files have changed."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[str, tuple[SceneFault, ...] | str]] = {}
@@ -90,7 +90,7 @@ def request_for(instances: list[SceneInstance]) -> str:
 
 
 def _with_short_names(instance: SceneInstance) -> SceneInstance:
-    """Return an instance whose elements have their local names, as in the text, if these are unambiguous."""
+    """Return an instance whose elements have local names, as in the text, if these names are unambiguous."""
     local = [one.element.replace("#", "/").rpartition("/")[2] for one in instance.elements]
     short = {one.element: name for one, name in zip(instance.elements, local, strict=True) if local.count(name) == 1}
 
@@ -103,7 +103,7 @@ def _with_short_names(instance: SceneInstance) -> SceneInstance:
 
 
 def file_states(instances: list[SceneInstance]) -> Iterator[FileState | None]:
-    """Yield the state of the current text of each file that the models name."""
+    """Yield the state of each file that the models name, as it is on disk or in an editor."""
     return map(source_state, _all_files(instances))
 
 
@@ -119,13 +119,13 @@ def _files(model: ModelSource) -> Iterator[Path]:
 
 
 def _examined(request: str) -> tuple[SceneFault, ...] | str:
-    """Return the faults of the instances in a request; a text if they could not be examined."""
+    """Return the faults of a request's instances, or the reason as text if they could not be examined."""
     answer = answer_of(FIND, request)
     return answer if isinstance(answer, str) else tuple(from_plain(SceneFault, one) for one in answer)
 
 
 def answer_of(module: str, request: str) -> list[object] | str:
-    """Return the answer of a process that sets up scene instances; a text if it failed or took too long."""
+    """Return the answer of a process that sets up scene instances, or a text if it failed or took too long."""
     seconds = SCENE_SECONDS.value()
     try:
         ending = run_for(seconds, module, sent=request)

@@ -1,8 +1,8 @@
 """Substitute other behaviours for implementations of behaviours.
 
-A substitution maps an implementation in a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog behaviour. In
-a study, it may also be another implementation of the model, whose name is in angle brackets (``<server-v2>``). If
-several substitutions name the same implementation, the last one is used.
+A substitution maps an implementation in a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog behaviour. In a
+study, it may also map to another implementation of the model, in angle brackets (``<server-v2>``). If several
+substitutions name the same implementation, the last one is used.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str
 def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> AcceptanceModel:
     """Return a model whose executions use the substituted behaviours. Raises ``SelectionError``.
 
-    Names that the model lacks are ignored. The error is raised if the catalog lacks a behaviour, or if a behaviour does
-    not execute the behaviours of a scenario.
+    Names that the model lacks are ignored. It is an error if the catalog lacks a behaviour, or if a behaviour cannot
+    execute the behaviours of a scenario.
     """
     if not substitutions:
         return model

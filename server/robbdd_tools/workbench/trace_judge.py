@@ -1,4 +1,4 @@
-"""Order a process to judge edited clauses on stored traces, and read its verdicts."""
+"""Let a separate process judge edited clauses on stored traces, and read its verdicts."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class JudgeEnded(Exception):
 
 
 class TraceJudge:
-    """The process that judges traces. It is started when it is first needed."""
+    """The process that judges traces. It starts at the first order."""
 
     def __init__(self, folder: Path) -> None:
         self._agent = Agent(folder, module=JUDGE)
         self._messages = self._agent.messages()
 
     def verdicts(self, order: JudgeOrder) -> Mapping[int, list[ClauseJudged]]:
-        """Return the verdicts on the clauses of an order, by the number of the execution. Raises ``JudgeEnded``."""
+        """Return the verdicts on an order's clauses, by the number of the execution. Raises ``JudgeEnded``."""
         self._agent.order(encode_order(order))
         found: dict[int, list[ClauseJudged]] = {trace.index: [] for trace in order.traces}
         waiting = set(found)
