@@ -1,1 +1,1 @@
-"""Read recordings of real robots: ROS bags, MCAP files and tables. The only user of rosbags."""
+"""Read recordings of real robots: ROS bags, MCAP files and tables. No other package uses rosbags."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 OLD = 1_000_000_000
-"""Age (ns) from which a goal that is executed in the first message of a topic began before the log."""
+"""If a topic's first message has an executing goal that is at least this old (ns), the goal began before the log."""
 
 
 class GoalState(Enum):
@@ -29,7 +29,7 @@ ROS1_STATES = (
 
 
 def action_of(topic: str) -> str:
-    """Return the name of an action: ``pick`` of ``/arm/pick/_action/status`` and of ``/arm/pick/status``."""
+    """Return the action of a topic: ``pick`` for ``/arm/pick/_action/status`` and for ``/arm/pick/status``."""
     parts = [part for part in topic.split("/") if part and part != "_action"]
     return parts[-2] if len(parts) > 1 else parts[-1]
 
@@ -38,18 +38,18 @@ def action_of(topic: str) -> str:
 class ActionGoals:
     """Turns the states of the goals of actions into texts: ``pick-start`` and ``pick-end``.
 
-    The start of a goal that was executed already before the log begins is unknown, and so is the end of a goal that had
-    ended before: they give no text, but a remark. A goal that fails has no end.
+    If a goal started or ended before the log begins, the time is unknown: there is a remark instead of a text. A goal
+    that fails has no end.
     """
 
     texts: list[tuple[int, str, str]] = field(default_factory=list[tuple[int, str, str]])
-    """Time (ns of reception), topic and text of each event."""
+    """The events: time of reception (ns), topic and text."""
     remarks: list[str] = field(default_factory=list[str])
     _states: dict[tuple[str, str], GoalState] = field(default_factory=dict[tuple[str, str], GoalState])
     _topics: set[str] = field(default_factory=set[str])
 
     def take(self, topic: str, received: int, goals: list[tuple[str, int, GoalState]]) -> None:
-        """Apply a message: the identity of each goal, the time (ns) at which it was accepted, and its state."""
+        """Apply a message. ``goals`` has the identity of each goal, the time (ns) of its acceptance, and its state."""
         first = topic not in self._topics
         self._topics.add(topic)
         for goal, accepted, state in goals:

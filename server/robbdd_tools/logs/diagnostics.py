@@ -13,7 +13,7 @@ LEVELS = {0: "ok", 1: "warn", 2: "error", 3: "stale"}
 class Diagnostics:
     """Turns the states of components into texts: ``gripper error`` when the level changes, and each new message.
 
-    The first state of a component is a text, too: it is not known for how long it has lasted.
+    The first state of a component is a text, too, because it is unknown how long it has lasted.
     """
 
     _states: dict[tuple[str, str], tuple[int, str]] = field(default_factory=dict[tuple[str, str], tuple[int, str]])

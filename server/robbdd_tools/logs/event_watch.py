@@ -33,7 +33,7 @@ class EventWatch:
         return frozenset(one.topic for one in self._signals)
 
     def events(self, topic: str, message: Any) -> list[str]:
-        """Return the events that a message reports. Raises ``UnreadableLog`` if it has no such field or value."""
+        """Return the events that a message reports. Raises ``UnreadableLog`` if it lacks a declared field or value."""
         own = [one for one in self._signals if one.topic == topic]
         self._seen.add(topic)
         return [one.event for one in own if self._occurs(one, message)]

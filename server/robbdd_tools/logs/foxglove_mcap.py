@@ -25,10 +25,10 @@ TRANSFORMS, TRANSFORM, POSE = "foxglove.FrameTransforms", "foxglove.FrameTransfo
 LOG = "foxglove.Log"
 JOINTS = "foxglove.JointStates"
 ROS_JOINTS = ("sensor_msgs/JointState", "sensor_msgs/msg/JointState")
-"""The type of ROS, as bridges write it with JSON messages."""
+"""ROS's type of joint states, which bridges also write as JSON messages."""
 ROS_PROFILE = "ros2"
 OWN_TRACE = "robbdd-trace-1"
-"""Encoding of the exact trace in the traces of simulated runs."""
+"""Encoding of the exact trace, which files of simulated runs contain."""
 
 
 def encodings(path: Path) -> set[str]:
@@ -45,7 +45,7 @@ def encodings(path: Path) -> set[str]:
 
 
 def is_uniform(path: Path) -> bool:
-    """Return whether all messages of an MCAP file are in JSON, or its profile is that of ROS 2.
+    """Return whether all messages of an MCAP file are in JSON, or the file has the ROS 2 profile.
 
     Raises ``UnreadableLog``.
     """
@@ -57,7 +57,8 @@ def is_uniform(path: Path) -> bool:
 def read_foxglove(path: Path, signals: Iterable[EventSignal] = ()) -> LogContents:
     """Return the contents of an MCAP file with JSON messages: transforms, poses and texts.
 
-    ``signals`` report events by messages of any type, at their reception. Raises ``UnreadableLog``.
+    ``signals`` define which messages, of any type, report events. An event has the time of reception. Raises
+    ``UnreadableLog``.
     """
     found, watch = LogCollector(), EventWatch(signals)
     try:

@@ -1,4 +1,4 @@
-"""Frames that several topics publish: which topic counts, and what the frames of the others are called."""
+"""Frames that several topics publish: choose the topic that counts, and rename the frames of the others."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ MAX_LISTED = 4
 
 @dataclass
 class FrameSources:
-    """The poses of frames by the topic that publishes them.
+    """The poses of frames, kept apart by the topic that publishes them.
 
-    Two robots may each have a ``base_link``, in transforms of their own (``/r1/tf``, ``/r2/tf``). A frame of another
-    topic, such as the odometry of wheels, is never mixed with that of the transforms.
+    Two robots may each have a ``base_link``, in transforms of their own (``/r1/tf``, ``/r2/tf``). Poses from another
+    topic, such as wheel odometry, are never mixed with those of the transforms.
     """
 
     _transforms: dict[str, TrackBuilder] = field(default_factory=dict[str, TrackBuilder])
     _topics: dict[str, TrackBuilder] = field(default_factory=dict[str, TrackBuilder])
 
     def of_transforms(self, topic: str) -> TrackBuilder:
-        """Return the builder of a topic of transforms; the static ones of a namespace are with the others."""
+        """Return the builder of a topic of transforms. Static and moving ones of a namespace share a builder."""
         found = self._transforms.get(topic)
         if found is None:
             # Static transforms are few; the others take this way once.
@@ -66,7 +66,7 @@ class FrameSources:
         return [time for one in (*self._transforms.values(), *self._topics.values()) for time in one.bounds()]
 
     def tracks(self, begin: int, remarks: list[str]) -> dict[str, Track]:
-        """Return the tracks by their names, with times in s since ``begin`` (ns). ``remarks`` gets what was decided."""
+        """Return the tracks by their names, with times in s since ``begin`` (ns). Adds its decisions to ``remarks``."""
         moved = {topic: builder.tracks(begin, remarks) for topic, builder in self._transforms.items()}
         found = _joined(moved, remarks)
         others: dict[str, dict[str, Track]] = {}
@@ -86,13 +86,13 @@ class FrameSources:
 
 
 def _group(topic: str) -> str:
-    """Return the topic of the transforms that move, for one of static ones."""
+    """Return the topic of moving transforms that belongs to a topic of static ones."""
     space, _, name = topic.rpartition("/")
     return f"{space}/{TRANSFORMS}" if name == STATIC else topic
 
 
 def _joined(groups: Mapping[str, dict[str, Track]], remarks: list[str]) -> dict[str, Track]:
-    """Return the transforms of all namespaces. A frame that several have is called by its namespace and its name."""
+    """Return the transforms of all namespaces. A frame that several namespaces have gets its namespace as prefix."""
     count: dict[str, int] = {}
     for tracks in groups.values():
         for frame in tracks:
@@ -112,7 +112,7 @@ def _joined(groups: Mapping[str, dict[str, Track]], remarks: list[str]) -> dict[
 
 
 def _outranked(frame: str, used: Track, others: Mapping[str, Track]) -> list[str]:
-    """Return sentences on topics whose poses are not used: the transforms have the frame, with another parent."""
+    """Return sentences on topics whose poses are not used because the transforms give the frame another parent."""
     return [
         f"'{frame}' is in '{track.parent}' on '{topic}', but in '{used.parent}' by the transforms, which are used"
         for topic, track in others.items()

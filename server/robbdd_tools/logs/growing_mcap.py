@@ -49,7 +49,7 @@ def read_mcap(path: Path, clocks: Mapping[str, float], signals: Iterable[EventSi
 
 
 class GrowingMcap:
-    """The contents of an MCAP file with messages of ROS 2 or of Foxglove in JSON. ``read`` adds what is new."""
+    """The contents of an MCAP file with messages of ROS 2 or of Foxglove in JSON. ``read`` adds new messages."""
 
     def __init__(self, path: Path, clocks: Mapping[str, float], signals: Iterable[EventSignal]) -> None:
         self._path = path
@@ -66,11 +66,11 @@ class GrowingMcap:
 
     @property
     def empty(self) -> bool:
-        """Whether no message was read so far."""
+        """Whether no message has been read so far."""
         return not self._topics
 
     def read(self) -> bool:
-        """Read what is new; return whether there was a message. Raises ``UnreadableLog``."""
+        """Read the new messages; return whether there were any. Raises ``UnreadableLog``."""
         count = 0
         for one in self._records.new_messages():
             count += 1
@@ -78,12 +78,12 @@ class GrowingMcap:
         return count > 0
 
     def check(self) -> None:
-        """Raise ``UnreadableLog`` if a topic that the user states is not in what was read."""
+        """Raise ``UnreadableLog`` if a topic that the user states has not occurred so far."""
         self._watch.check(self._topics)
         list(stated_clocks(self._clocks, {topic: kind for topic, kind in self._topics.items() if kind in READERS}))
 
     def contents(self) -> LogContents:
-        """Return the contents of what was read so far."""
+        """Return the contents that have been read so far."""
         # Finishing converts times by clocks that later messages may change.
         found = deepcopy(self._contents)
         found.remarks += self._watch.remarks

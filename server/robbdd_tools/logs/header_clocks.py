@@ -1,4 +1,4 @@
-"""Compare the clocks of headers with the clock of reception, and convert times of reception to that of the headers."""
+"""Compare the clocks of headers with the clock of reception, and convert times of reception to the headers' clock."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ if TYPE_CHECKING:
     Nanoseconds = npt.NDArray[np.int64]
 
 MIN_OFFSET = 1_000_000_000
-"""Difference (ns) from which two clocks are different ones; smaller ones may be delays of messages."""
+"""Two clocks count as different if they differ by more than this (ns). Smaller differences may be delays."""
 MIN_DRIFT = 100_000_000
-"""Change (ns) of the difference from which it is not the same throughout a log."""
+"""If the difference of two clocks changes by more than this (ns) during a log, it counts as a drift."""
 EVERY = 50_000_000
-"""Time of reception (ns) between two pairs that are kept."""
+"""Pairs of times are kept at intervals of at least this long (ns of reception)."""
 PARTS = 10
-"""Parts of a log whose differences are compared."""
+"""To find a drift, a log is divided into this many parts."""
 MAX_RATIO = 100
-"""Ratio of the two clocks' speeds from which the times of reception were not recorded when messages arrived."""
+"""If headers run more than this many times as fast as reception, times of reception are not times of arrival."""
 MAX_LISTED = 4
 
 Source = tuple[str, str]
-"""A topic, and on topics of transforms a frame: what one program publishes."""
+"""A topic and, for topics of transforms, a frame. One program publishes each source."""
 
 
 @dataclass(frozen=True, slots=True)
 class HeaderTime:
-    """The clock of the headers, by times of reception.
+    """The clock of the headers as a function of the time of reception.
 
-    - ``received``, ``stamps``: (n,) ns, increasing; pairs between which times are interpolated. Without pairs, the
+    - ``received``, ``stamps``: (n,) ns, increasing; times are interpolated between these pairs. Without pairs, the
       clocks differ by ``offset``.
     - ``offset``: by how much (ns) the clock of reception is ahead.
-    - ``unusable``: sources whose headers have another clock, or one that jumps back.
+    - ``unusable``: sources whose headers have a different clock, or a clock that jumps back.
     - ``timeless``: true if the times of reception do not say when messages without headers were published.
     """
 
@@ -48,7 +48,7 @@ class HeaderTime:
     remarks: tuple[str, ...] = ()
 
     def of(self, received: Nanoseconds) -> Nanoseconds:
-        """Return times of reception (n,) in the clock of the headers, ns. Beyond the pairs, the difference stays."""
+        """Convert times of reception (n,) to the headers' clock, ns. Beyond the pairs, the last difference is used."""
         if not len(self.received):
             return received - self.offset
         inside = np.clip(received, self.received[0], self.received[-1])
@@ -63,21 +63,21 @@ class HeaderTime:
 
 @dataclass
 class HeaderClocks:
-    """Collects when messages were received, and when their headers say that they were recorded, in ns."""
+    """Collects the times at which messages were received, and the times in their headers, in ns."""
 
     stated: Collection[str] = ()
     """Topics whose clocks the user has stated: they count as corrected."""
     _sources: dict[Source, _Pairs] = field(default_factory=dict[Source, "_Pairs"])
 
     def seen(self, topic: str, frame: str, received: int, stamp: int) -> None:
-        """Take a message; messages are in the order of their reception."""
+        """Add a message. Messages must be added in the order of their reception."""
         pairs = self._sources.get((topic, frame))
         if pairs is None:
             pairs = self._sources[topic, frame] = _Pairs()
         pairs.add(received, stamp)
 
     def header_time(self) -> HeaderTime:
-        """Return the clock that most headers have, and the sources that do not have it."""
+        """Return the headers' clock that counts, and the sources that have a different one."""
         jumps = {source: float(pairs.jump) for source, pairs in self._sources.items() if pairs.jump}
         remarks = [_jump_words(*one) for one in _grouped(jumps)]
         known = {source: pairs.arrays() for source, pairs in self._sources.items() if source not in jumps}
@@ -110,7 +110,7 @@ class HeaderClocks:
 
 @dataclass
 class _Pairs:
-    """Times of reception and of headers of a source, ns: those of a part of its messages, in the order of reception."""
+    """Times of reception and of headers (ns) for a part of a source's messages, in the order of reception."""
 
     received: array[int] = field(default_factory=lambda: array("q"))
     stamps: array[int] = field(default_factory=lambda: array("q"))
@@ -136,7 +136,7 @@ class _Pairs:
 
 
 def _reference(known: dict[Source, tuple[Nanoseconds, Nanoseconds]]) -> Source:
-    """Return the source whose clock counts: that of reception if a source has it, then the one with most messages."""
+    """Return the source whose clock counts: the one with most messages, preferably with the clock of reception."""
     offsets = {source: float(np.median(received - stamps)) for source, (received, stamps) in known.items()}
     near = [source for source, offset in offsets.items() if abs(offset) <= MIN_OFFSET]
     return max(near or known, key=lambda source: len(known[source][0]))
@@ -155,14 +155,14 @@ def _ratio(received: Nanoseconds, stamps: Nanoseconds) -> float:
 
 
 def _ahead(received: Nanoseconds, stamps: Nanoseconds, clock: HeaderTime) -> float:
-    """Return by how much (ns) the headers of a source are ahead of a clock, where both were received if possible."""
+    """Return how far (ns) a source's headers are ahead of a clock, if possible only where both have messages."""
     inside = (received >= clock.received[0]) & (received <= clock.received[-1])
     chosen = inside if inside.any() else np.ones(len(received), bool)
     return float(np.median(stamps[chosen] - clock.of(received[chosen])))
 
 
 def _grouped(found: Mapping[Source, float]) -> list[tuple[str, str, float]]:
-    """Return each topic with words for it and its frames, and the largest of their values."""
+    """Return each topic with a text that names it and its frames, and the largest of their values."""
     topics: dict[str, list[tuple[str, float]]] = {}
     for (topic, frame), value in found.items():
         topics.setdefault(topic, []).append((frame, value))

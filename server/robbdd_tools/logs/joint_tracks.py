@@ -44,7 +44,7 @@ class JointBuilder:
     def add(
         self, topic: str, time: int, names: Sequence[str], positions: Sequence[float], efforts: Sequence[float] = ()
     ) -> None:
-        """Add the states of a message. One without positions is ignored, as some drivers publish velocities alone."""
+        """Add the states of a message. A message without positions is ignored: some drivers publish only velocities."""
         if not len(positions):
             return
         if len(positions) != len(names):
@@ -70,7 +70,7 @@ class JointBuilder:
                 own.values.extend(states.values)
 
     def drop(self, topic: str) -> None:
-        """Forget the states on a topic."""
+        """Forget the states that a topic published."""
         self._topics.pop(topic, None)
 
     def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
@@ -126,8 +126,8 @@ def positions_at(track: JointTrack, times: FloatArray, max_gap: float, *, wraps:
     """Return the positions of a joint at ``times`` (n,) s, shape (n,).
 
     A position is interpolated linearly between two states that are at most ``max_gap`` (s) apart; it is NaN where they
-    are further apart, and before the first and after the last state. If the joint ``wraps``, its position may jump by
-    whole turns between two states, as drivers publish angles of joints without limits; then the shorter way counts.
+    are further apart, and before the first and after the last state. If the joint ``wraps``, the shorter way counts,
+    because drivers may publish angles of joints without limits that jump by whole turns between two states.
     """
     known = np.unwrap(track.positions, period=TURN) if wraps else track.positions
     after = np.clip(np.searchsorted(track.times, times, side="left"), 0, len(track.times) - 1)

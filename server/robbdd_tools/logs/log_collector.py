@@ -1,4 +1,4 @@
-"""Collect what the messages of a log say, with the clocks of their headers and of their reception."""
+"""Collect the data in the messages of a log, with the clocks of their headers and of their reception."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ FORCE = "force"
 class LogCollector:
     """Collects poses, states of joints, forces, texts and truth values. Times are in ns.
 
-    A message has the time of its header or, if that is zero or there is none, of its reception. Messages are added in
-    the order of their reception.
+    The time of a message is the time in its header or, if it is zero or missing, the time of reception. Messages must
+    be added in the order of their reception.
     """
 
     def __init__(self, stated: Collection[str] = ()) -> None:
-        """``stated`` are the topics whose clocks the user has stated."""
+        """``stated`` has the topics whose clocks the user has stated."""
         self.clocks = HeaderClocks(stated)
         self._stamped, self._received = _Messages(), _Messages()
         self._texts: list[tuple[int, str, str]] = []
@@ -38,7 +38,7 @@ class LogCollector:
     def transform(
         self, topic: str, frame: str, parent: str, time: tuple[int, int], pose: Pose, *, static: bool = False
     ) -> None:
-        """Add a transform. ``time`` has the times of its header and of its reception."""
+        """Add a transform. ``time`` has the time of its header and the time of its reception."""
         stamp, received = time
         name = frame.lstrip("/")
         # Static transforms hold at all times: they are published once, with the time of a start long ago.
@@ -75,7 +75,7 @@ class LogCollector:
         self._truths.setdefault(topic, []).append((received, value))
 
     def finish(self) -> LogContents:
-        """Return the contents, with times in s since the earliest message that is used."""
+        """Return the contents, with times in s since the earliest used message."""
         clock = self.clocks.header_time()
         self._stamped.drop(clock.unusable)
         if clock.timeless:
@@ -149,7 +149,7 @@ def _moved(times: Sequence[int], clock: HeaderTime) -> list[int]:
 
 
 def _truths(found: list[tuple[int, float]], clock: HeaderTime) -> tuple[list[int], npt.NDArray[np.float64]]:
-    """Return the times (ns) of truth values, and the values, in order of time."""
+    """Return the times (ns) of truth values and the values, both in order of time."""
     times = _moved([time for time, _ in found], clock)
     order = sorted(range(len(times)), key=times.__getitem__)
     return [times[row] for row in order], np.array([found[row][1] for row in order])

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 MIN_LENGTH = 0.5
-"""Length from which four numbers are a quaternion that is only not normalised."""
+"""Four numbers whose length is at least this are a quaternion that merely needs normalising."""
 
 
 SAME = 1e-6
-"""Largest difference of positions (m) and quaternions that are the same pose, published again."""
+"""If positions (m) and quaternions differ by at most this, they are the same pose, published again."""
 
 
 class UnreadableLog(RobbddError):
@@ -56,7 +56,7 @@ class TextStamp:
 
 @dataclass(frozen=True, slots=True)
 class Truths:
-    """The reports of a topic on a clause: from each of ``times`` (n,) s on, true (1), false (-1) or unknown (NaN)."""
+    """A topic's reports on a clause. Each of ``times`` (n,) s begins a value: true (1), false (-1) or unknown (NaN)."""
 
     times: FloatArray
     values: FloatArray
@@ -69,10 +69,11 @@ class LogContents:
     - ``tracks``: maps a frame to its poses.
     - ``texts``: the texts on all topics, in order of time.
     - ``truths``: maps a topic of truth values to them.
-    - ``joints``: maps a topic of joint states, and the name of a joint in them, to its states.
-    - ``forces``: maps a topic of wrenches to the sizes of their forces, N, as ``positions``.
+    - ``joints``: maps a topic of joint states to its joints, and the name of each joint to the joint's states.
+    - ``forces``: maps a topic of wrenches to a track whose ``positions`` are the sizes of the forces, N.
     - ``end``: the time of the last message, s since the first.
-    - ``unfinished``: true if the recording goes on, or was interrupted: its end is not that of what was recorded.
+    - ``unfinished``: true if the recording continues or was interrupted, so that the end of the log is not its real
+      end.
     - ``remarks``: sentences on how the log was read, for example a clock offset that was corrected.
     """
 
@@ -92,7 +93,7 @@ class TrackBuilder:
 
     _frames: dict[str, _Poses] = field(default_factory=dict[str, "_Poses"])
     _lost: dict[str, str] = field(default_factory=dict[str, str])
-    """Frames whose poses cannot be used → the reason, if no other sentence names it."""
+    """Frames whose poses cannot be used → the reason; empty if another sentence already names it."""
 
     def add(
         self,
@@ -116,7 +117,7 @@ class TrackBuilder:
         poses.values.extend((*position, *orientation))
 
     def absorb(self, other: TrackBuilder) -> None:
-        """Add the poses of another builder. A frame with another parent there has two parents."""
+        """Add the poses of another builder. A frame to which the builders give different parents has two parents."""
         self._lost |= {frame: words for frame, words in other._lost.items() if frame not in self._lost}
         for frame, poses in other._frames.items():
             own = self._frames.setdefault(frame, _Poses(poses.parent, static=poses.static))
@@ -128,7 +129,7 @@ class TrackBuilder:
             own.values.extend(poses.values)
 
     def drop(self, frame: str) -> None:
-        """Forget the poses of a frame. It stays a frame, whose place is not known."""
+        """Forget the poses of a frame. The frame remains, but its place is unknown."""
         if frame in self._frames:
             self._lost.setdefault(frame, "")
 
@@ -146,9 +147,9 @@ class TrackBuilder:
     def tracks(self, begin: int, remarks: list[str]) -> dict[str, Track]:
         """Return the tracks, with times in s since ``begin`` (ns).
 
-        Of several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion has no
-        length, are left out. The place of a frame with several parents, or with different static poses, is not known:
-        ``remarks`` gets a sentence on each.
+        If a frame has several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion
+        has no length, are left out. If a frame has several parents, or different static poses, its place is unknown,
+        and a sentence about it is added to ``remarks``.
         """
         found: dict[str, Track] = {}
         for frame, poses in self._frames.items():
@@ -173,7 +174,7 @@ def _nowhere(parent: str) -> Track:
 
 @dataclass
 class _Poses:
-    """The poses of one frame: times (ns), and for each position (m) and orientation (w, x, y, z)."""
+    """The poses of one frame: their times (ns), positions (m) and orientations (w, x, y, z)."""
 
     parent: str
     static: bool = True

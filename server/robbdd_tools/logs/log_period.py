@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def cut(contents: LogContents, begin: float, end: float | None) -> LogContents:
     """Return the contents of a log from ``begin`` to ``end`` (s since its begin); ``None`` for the end of the log.
 
-    Times count from ``begin`` then. Static transforms stay, and so does the last truth value before the period.
-    Raises ``UnreadableLog`` if the log has nothing in it.
+    The new times count from ``begin``. Static transforms are kept, and so is the last truth value before the period.
+    Raises ``UnreadableLog`` if the period is empty or begins after the end of the log.
     """
     until = contents.end if end is None else min(end, contents.end)
     if not begin < until:
@@ -43,7 +43,7 @@ def cut(contents: LogContents, begin: float, end: float | None) -> LogContents:
 
 
 def _inside(times: FloatArray, begin: float, end: float) -> slice:
-    """Return the rows from the last one before a period to the first one behind it, between which it is known."""
+    """Return the rows from the last one before a period to the first one after it, which cover the whole period."""
     first = max(int(np.searchsorted(times, begin, side="right")) - 1, 0)
     last = int(np.searchsorted(times, end, side="left")) + 1
     return slice(first, last)

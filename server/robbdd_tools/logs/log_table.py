@@ -1,8 +1,8 @@
 """Read logs that are tables (CSV): one row for each time at which something was recorded.
 
-Columns: ``time`` (s); of a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally ``qx``, ``qy``, ``qz``, ``qw`` and
-``parent``; of an event ``event``. Every other column with numbers may be a joint (rad, or m of a sliding joint). A
-title may end with another unit in brackets: ``elbow [deg]``. A row may have several of these, or one of them.
+The columns are ``time`` (s); for a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally ``qx``, ``qy``, ``qz``,
+``qw`` and ``parent``; for an event ``event``. Every other column with numbers may be a joint (rad, or m for a sliding
+joint). A title may end with another unit in brackets: ``elbow [deg]``. A row may have one or several of these.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Row:
         return "" if column is None else self._cells.get(column.title) or ""
 
     def number(self, name: str) -> float:
-        """Return the number of a known column in the SI unit. Raises ``UnreadableLog`` for another text."""
+        """Return the number in a known column, in the SI unit. Raises ``UnreadableLog`` if the text is not a number."""
         cell = self.text(name)
         try:
             value = float(cell)
@@ -49,7 +49,7 @@ class Row:
         return value * self._columns.known[name].factor
 
     def joints(self) -> dict[str, float]:
-        """Return the numbers of joints in the SI unit. Columns with other texts in this row are left out."""
+        """Return the numbers of joints in the SI unit. Columns that have no number in this row are left out."""
         found: dict[str, float] = {}
         for name, column in self._columns.joints.items():
             try:
@@ -88,7 +88,7 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:
-    """Return the events of a CSV file whose times count from the begin of a log, in s. Raises ``UnreadableLog``."""
+    """Return the events of a CSV file. Their times count from the begin of the log, in s. Raises ``UnreadableLog``."""
     try:
         rows = [(row.number("time"), row.text("event")) for row in _rows(path, {}) if row.text("event")]
     except (OSError, UnicodeDecodeError, csv.Error) as error:

@@ -1,4 +1,4 @@
-"""Read the complete records of an MCAP file that is still written, or that was cut off."""
+"""Read the complete records of an MCAP file that is still being written or was cut off."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class McapRecords:
         self._schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
         self.complete = False
-        """Whether the end of the file was read, which a recorder writes when it stops."""
+        """Whether the end of the file, which a recorder writes when it stops, has been read."""
 
     def new_messages(self) -> Iterator[McapMessage]:
-        """Yield the messages of the records that are complete and have not been read. Raises ``UnreadableLog``."""
+        """Yield the messages of complete records that have not been read yet. Raises ``UnreadableLog``."""
         with open_regular(self._path) as file:
             if not self._offset:
                 magic = file.read(len(MAGIC))
@@ -74,7 +74,7 @@ class McapRecords:
 
 
 def _parsed(path: Path, record: bytes) -> Iterator[object]:
-    """Yield the records in a record: those of a chunk, or itself."""
+    """Yield the records of a chunk; for any other record, the record itself."""
     try:
         yield from StreamReader(BytesIO(record), skip_magic=True, validate_crcs=True).records
     except EndOfFile:

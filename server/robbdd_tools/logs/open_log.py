@@ -1,4 +1,4 @@
-"""Find out what kind of log a path is, and read it."""
+"""Determine the kind of a log, and read it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
 
 
 def is_log(path: Path) -> bool:
-    """Return whether a path is a log, by its name: a bag, a file of a bag, or a table."""
+    """Return whether the name of a path is that of a log: a bag, a file of a bag, or a table."""
     if path.is_dir():
         return (path / METADATA).is_file() or bool(bag_files(path))
     return path.suffix.lower() in SUFFIXES and path.is_file()
@@ -37,9 +37,11 @@ def read_log(
     clocks: Mapping[str, float] | None = None,
     signals: Sequence[EventSignal] = (),
 ) -> LogContents:
-    """Return the contents of a log. ``columns`` maps names of a table's columns to titles in the file, and
-    ``clocks`` topics of a ROS bag to the time (s) by which the clock of their headers is ahead. ``signals`` report
-    events, which are texts then.
+    """Return the contents of a log.
+
+    ``columns`` maps names of a table's columns to titles in the file. ``clocks`` maps topics of a ROS bag to the time
+    (s) by which the clock of their headers is ahead. ``signals`` define which messages report events; these become
+    texts.
 
     Raises ``UnreadableLog``.
     """
@@ -64,7 +66,10 @@ def read_log(
 
 
 def _read_folder(path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]) -> LogContents:
-    """Return the contents of a rosbag2 folder. An interrupted recording has no metadata, and a file without an end."""
+    """Return the contents of a rosbag2 folder.
+
+    If the recording was interrupted, the folder has no metadata, and its last file has no end.
+    """
     files = bag_files(path)
     if len(files) == 1 and files[0].suffix.lower() == ".mcap" and is_cut(files[0]):
         return read_mcap(files[0], clocks or {}, signals)

@@ -1,4 +1,4 @@
-"""Poses of several things in one message: their frames, and names that do not tell the things apart."""
+"""Poses of several things in one message: name their frames, and find names that are ambiguous."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def frame_in(topic: str, name: str) -> str:
 class PoseLists:
     """The names of things in the lists of each topic.
 
-    A name denotes a thing only if it never has two places at one time. A thing without a name is called by its index,
-    which denotes it only if all lists of the topic are of the same length.
+    A name identifies a thing only if it never has two places at one time. A thing without a name is named by its index.
+    The index identifies the thing only if all lists of the topic have the same length.
     """
 
     nameless: set[str] = field(default_factory=set[str])
@@ -46,19 +46,19 @@ class PoseLists:
         return frames
 
     def seen(self, topic: str, frame: str, time: int, place: tuple[float, float, float]) -> None:
-        """Notice the place (m) of a thing that is published alone; ``time`` in ns."""
+        """Record the place (m) of a thing that is published alone, at a ``time`` in ns."""
         before = self._last.get(frame)
         if before is not None and before[0] == time and before[1] != place:
             self._twice[frame] = topic
         self._last[frame] = time, place
 
     def ambiguous(self, frame: str) -> bool:
-        """Return whether a frame may be of different things at different times."""
+        """Return whether a frame may stand for different things."""
         topic, _, name = frame.rpartition("/")
         return frame in self._twice or (name.isdigit() and len(self._lengths.get(topic, ())) > 1)
 
     def remarks(self) -> list[str]:
-        """Return a sentence on each topic with frames that are ambiguous, and how to record it."""
+        """Return a sentence on each topic with ambiguous frames. It says how to record the topic."""
         words = "poses, so an index is not always the same thing: they are not used"
         found = [
             f"the lists on '/{topic}' have from {min(lengths)} to {max(lengths)} {words}; record names with them"

@@ -26,7 +26,7 @@ class CannotExport(RobbddError):
 
 
 Joints = Sequence[tuple[float, Mapping[str, Mapping[str, float]]]]
-"""Times (s), each with the joint positions (rad or m) of each agent."""
+"""Samples: a time (s) and the joint positions (rad or m) of each agent."""
 
 
 def write_ros2_bag(
@@ -40,8 +40,8 @@ def write_ros2_bag(
     """Write a trace as a bag of ROS 2.
 
     It has ``/tf``, the events (``std_msgs/String`` on ``/events``), what each agent holds (``/AGENT/holds``), and the
-    joint states of each agent (``/AGENT/joint_states``). A frame has the local name of its element. ``frames`` has the
-    position (m) of the frame of each object's model in the object's coordinates.
+    joint states of each agent (``/AGENT/joint_states``). A frame has the local name of its element. ``frames`` maps
+    each object to the position (m) of its model's frame in the object's coordinates.
 
     Raises ``CannotExport`` if the folder exists or rosbags is not installed.
     """

@@ -22,12 +22,13 @@ MAX_LISTED = 8
 def read_ros_bag(
     path: Path, clocks: Mapping[str, float] | None = None, signals: Iterable[EventSignal] = ()
 ) -> LogContents:
-    """Return the contents of a bag. ``signals`` report events by messages of any type, at their reception.
+    """Return the contents of a bag.
 
-    Poses are stamped by the headers of their messages. Messages without a header are stamped by their reception.
-    If the two clocks differ, the time of reception is moved by the median difference, and a remark says so.
-    ``clocks`` maps topics to the time (s) by which the clock of their headers is ahead; it is subtracted.
-    Raises ``UnreadableLog``.
+    ``signals`` define which messages, of any type, report events. An event has the time of reception.
+
+    The time of a pose is the time in its message's header. Without a header, it is the time of reception. If the two
+    clocks differ, the time of reception is moved by the median difference, and a remark says so. ``clocks`` maps topics
+    to the time (s) by which the clock of their headers is ahead; it is subtracted. Raises ``UnreadableLog``.
     """
     try:
         from rosbags.highlevel import AnyReader
@@ -69,7 +70,7 @@ def read_ros_bag(
 def take_message(
     contents: RosContents, watch: EventWatch, channel: tuple[str, str], received: int, message: Any
 ) -> None:
-    """Take a decoded message of a channel (topic and type), and the events that it reports."""
+    """Add a decoded message of a channel (topic and type), and the events that it reports."""
     topic, kind = channel
     if kind in READERS:
         READERS[kind](contents, topic, received, message)
@@ -78,7 +79,7 @@ def take_message(
 
 
 def not_read(topics: Mapping[str, str], defined: Collection[str]) -> list[str]:
-    """Return sentences on topics (→ types) that are not read: those of other types, and those without a definition."""
+    """Return sentences on topics (→ types) that are not read, because the type is not used or has no definition."""
     other = sorted(f"{topic} ({kind})" for topic, kind in topics.items() if kind not in READERS)
     missing = {topic: kind for topic, kind in topics.items() if kind in READERS and kind not in defined}
     listed = ", ".join(other[:MAX_LISTED]) + (f" and {len(other) - MAX_LISTED} more" if len(other) > MAX_LISTED else "")

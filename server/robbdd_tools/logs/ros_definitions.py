@@ -1,4 +1,4 @@
-"""Definitions of messages for bags that do not contain them: those of ROS 2 before Iron in SQLite."""
+"""Definitions of messages for bags that lack them, as SQLite bags of ROS 2 before Iron do."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ DEFINITIONS = {
 
 
 def known_types() -> Any:
-    """Return the type store of ROS 2 Humble, and of the packages above. Raises ``ImportError`` without rosbags."""
+    """Return the type store of ROS 2 Humble, with ``DEFINITIONS`` added. Raises ``ImportError`` without rosbags."""
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)

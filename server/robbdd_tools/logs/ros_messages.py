@@ -23,16 +23,16 @@ WORLD = "world"
 
 
 class RosContents:
-    """Collects what the messages of a bag say. Times are in ns."""
+    """Collects the data in the messages of a bag. Times are in ns."""
 
     def __init__(self, stated: Collection[str] = ()) -> None:
-        """``stated`` are the topics whose clocks the user has stated."""
+        """``stated`` has the topics whose clocks the user has stated."""
         self.found = LogCollector(stated)
         self.lists = PoseLists()
         self.goals = ActionGoals()
         self.remarks: list[str] = []
         self.ahead = 0
-        """By how much (ns) the clock of the headers of the next messages is ahead."""
+        """The clock of the next messages' headers is ahead by this (ns)."""
         self._diagnostics = Diagnostics()
 
     def transforms(self, topic: str, received: int, message: Any) -> None:
@@ -53,7 +53,7 @@ class RosContents:
         self._pose(topic, topic, received, message.header, message.pose.pose)
 
     def odometry(self, topic: str, received: int, message: Any) -> None:
-        """Take the pose of ``child_frame_id``, or of the topic without one."""
+        """Take the pose of ``child_frame_id`` or, if it is missing, of the topic."""
         self._pose(topic, message.child_frame_id or topic, received, message.header, message.pose.pose)
 
     def poses(self, topic: str, received: int, message: Any) -> None:
@@ -148,7 +148,7 @@ class RosContents:
         self.goals.take(topic, received, found)
 
     def finish(self) -> LogContents:
-        """Return the contents, with times in s since the earliest message that is used."""
+        """Return the contents, with times in s since the earliest used message."""
         for received, topic, text in self.goals.texts:
             self.found.text(topic, received, text)
         found = self.found.finish()
@@ -212,7 +212,7 @@ HEADERLESS = frozenset(
         "actionlib_msgs/msg/GoalStatusArray",
     }
 )
-"""Types whose messages have the time of their reception."""
+"""Types without headers: their messages have the time of reception."""
 
 
 def _pose(pose: Any) -> Pose:

@@ -1,4 +1,4 @@
-"""The columns of a table: which ones are known, and in which unit their numbers are."""
+"""The columns of a table: the known ones, and the units of their numbers."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ DIMENSIONS = {
     **dict.fromkeys(("frame", *TURN, "parent", "event"), ""),
     **dict.fromkeys(POSITION, "length"),
 }
-"""Known columns → what their numbers measure; empty for texts and numbers without a unit."""
+"""Known columns → dimension of their numbers; empty for texts and numbers without a unit."""
 OF_JOINTS = ("angle", "length")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table: its title in the file, and its unit, which is the SI unit if it is empty."""
+    """A column of a table: its title in the file, and its unit. An empty unit is the SI unit."""
 
     title: str
     unit: str = ""
 
     @property
     def factor(self) -> float:
-        """The size of the unit in the SI unit."""
+        """The factor that converts the unit to the SI unit."""
         return si_factor(self.unit)
 
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """The ``known`` columns of a table by their names, and those that may be of ``joints`` by titles without units."""
+    """The ``known`` columns of a table by name, and possible columns of ``joints`` by title without unit."""
 
     known: Mapping[str, Column]
     joints: Mapping[str, Column]
@@ -45,8 +45,8 @@ def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> 
     """Return the columns of a table.
 
     A title may have a unit in brackets (``elbow [deg]``). ``stated`` maps names of known columns to titles, with or
-    without the unit. ``place`` is that of the first line, for messages. Raises ``UnreadableLog`` for a name or a title
-    that does not exist, and for a unit of a known column that measures something else.
+    without the unit. ``place`` is the place of the first line, for messages. Raises ``UnreadableLog`` for a name or a
+    title that does not exist, and for a unit of a known column that measures something else.
     """
     every = dict(map(_split, titles))
     known = {name: every[name] for name in DIMENSIONS if name in every}

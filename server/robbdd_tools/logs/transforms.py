@@ -17,7 +17,7 @@ class Unconnected(Exception):
 
 
 def root_of(frame: str, tracks: Mapping[str, Track]) -> str:
-    """Return the frame without a parent at the end of a frame's chain. Raises ``Unconnected`` for a circle."""
+    """Return the root of a frame: the end of its chain of parents. Raises ``Unconnected`` if the chain is a circle."""
     return _chain(frame, tracks)[-1]
 
 
@@ -62,7 +62,7 @@ def rotated(turn: FloatArray, vectors: FloatArray) -> FloatArray:
 
 
 def _chain(frame: str, tracks: Mapping[str, Track]) -> list[str]:
-    """Return a frame, its parent, and so on."""
+    """Return the chain of a frame: the frame, its parent, and so on."""
     found = [frame]
     while found[-1] in tracks:
         parent = tracks[found[-1]].parent
@@ -75,7 +75,7 @@ def _chain(frame: str, tracks: Mapping[str, Track]) -> list[str]:
 def _along(
     frames: list[str], tracks: Mapping[str, Track], times: FloatArray, max_gap: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the poses of the first frame in the parent of the last one."""
+    """Return the poses of a chain's first frame relative to the parent of its last frame."""
     position = np.zeros((len(times), 3))
     turn = np.tile((1.0, 0.0, 0.0, 0.0), (len(times), 1))
     for frame in frames:
