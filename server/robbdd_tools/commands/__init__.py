@@ -1,11 +1,7 @@
-"""The commands of the command line, one file each. All printing is done here.
-
-This package is in the layer of ``cli``.
-"""
+"""The commands of the command line, one file each. Only this package prints. It is in the layer of ``cli``."""
 
 OK, FINDINGS, FAILED, CANNOT_TELL = 0, 1, 2, 3
-"""Exit codes: success; errors found, or a clause that does not hold; the command could not do its work; more
-executions are needed to tell."""
+"""Exit codes: success; errors, or a clause that does not hold; failure of the command; more executions are needed."""
 
 
 def signal_code(number: int) -> int:

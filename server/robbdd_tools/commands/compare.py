@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.comparison import Comparison, ExecutionChange
 
 MOST_FLIPS = 20
-"""So many executions that flipped are printed."""
+"""At most this many flipped executions are printed."""
 CODES = {Decision.IDENTICAL: OK, Decision.ACCEPTED: OK, Decision.WORSE: FINDINGS, Decision.UNCLEAR: CANNOT_TELL}
 
 
@@ -49,10 +49,10 @@ CODES = {Decision.IDENTICAL: OK, Decision.ACCEPTED: OK, Decision.WORSE: FINDINGS
 class CompareOptions:
     """The options of ``robbdd compare``.
 
-    - ``before``, ``after``: stored runs or results files. ``path`` is in the project, ``store`` another store.
+    - ``before``, ``after``: stored runs or results files. ``path`` is in the project; ``store`` is another store.
     - ``gates``: texts such as ``no clause worse than 2 points``.
     - ``json``, ``markdown``, ``html``: output files.
-    - ``again``: so many of a study's executions that flipped are executed again, by ``policy``, for their replays.
+    - ``again``: how many of a study's flipped executions are executed again, under ``policy``, to show replays.
     """
 
     before: str
@@ -70,10 +70,10 @@ class CompareOptions:
 
 
 def compare(options: CompareOptions) -> int:
-    """Compare two runs and print what is shown of each clause.
+    """Compare two runs and print the result for each clause.
 
-    Returns 0 if the runs are identical or the gate is shown to be kept, 1 if a clause is worse, 2 if the runs cannot be
-    compared, 3 if the executions do not tell.
+    Returns 0 if the runs are identical or shown to be within the gate, 1 if a clause is worse, 2 if the runs cannot be
+    compared, 3 if there are too few executions to decide.
     """
     return report_problems(Outputs(report=options.json), viewer=False, work=lambda: _compare(options))
 
@@ -124,7 +124,7 @@ def _compare(options: CompareOptions) -> int:
 
 
 def _listed(before: RunSource, after: RunSource) -> Comparison | None:
-    """Return which executions flipped, and what differs in the input; ``None`` unless both runs are stored."""
+    """Return the flipped executions, and what differs in the input; ``None`` unless both runs are stored."""
     if before.place is None or after.place is None:
         return None
     return list_changes(before.place, after.place)
@@ -139,9 +139,9 @@ def _index(change: ExecutionChange, *, later: int) -> int:
 def _recordings(
     options: CompareOptions, source: RunSource, indices: Sequence[int], folder: Path
 ) -> Sequence[TracedRun]:
-    """Return where the executions number ``indices`` of a source were recorded.
+    """Return the runs that recorded the executions ``indices`` of a source.
 
-    The first ones of a study are executed again if that was asked for.
+    If the user asks for it, the first ones of a study are executed again.
     """
     if source.place is not None:
         results = source.results

@@ -18,7 +18,7 @@ from robbdd_tools.workbench.stored import find_run
 
 @dataclass(frozen=True, slots=True)
 class PackOptions:
-    """The options of ``robbdd evidence pack``: the run, a path in its project, the bundle, and whether with traces."""
+    """The options of ``robbdd evidence pack``: the run, a path in its project, the bundle, whether to add traces."""
 
     run: str
     path: Path
@@ -43,8 +43,8 @@ def pack(options: PackOptions) -> int:
 def verify(path: Path, digest: str, json: Path | None, *, user_code: bool) -> int:
     """Check a bundle and print what was checked.
 
-    Returns 0 if everything was checked, 1 if something in the bundle contradicts the rest, 2 if it is no bundle, 3 if
-    nothing contradicts, but a part could not be checked.
+    Returns 0 if everything was checked and is consistent, 1 if something in the bundle contradicts the rest, 2 if the
+    file is not a bundle, 3 if nothing contradicts, but a part could not be checked.
     """
 
     def work() -> int:

@@ -35,7 +35,7 @@ class Followed(Protocol):
 def follow_run(run: Run, *, every_clause: bool = False) -> int:
     """Execute a run and show its progress. Return the number of the signal that ended the run, or 0.
 
-    Of more than ``MANY`` scenarios, failures and pass rates are shown, unless ``every_clause`` is true.
+    If there are more than ``MANY`` scenarios, only failures and pass rates are shown, unless ``every_clause`` is true.
     """
 
     def watching(display: Display) -> None:

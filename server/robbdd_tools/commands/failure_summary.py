@@ -25,11 +25,11 @@ _MEASURED = re.compile(r"\d+\.\d+")
 def failure_summary(
     scenarios: Iterable[ScenarioResult], errors: Mapping[str, int] | None = None
 ) -> list[tuple[Outcome, str]]:
-    """Return a line for each cause of failures, the most frequent first: its clause, its reason and its number.
+    """Return a line for each cause of failures, most frequent first: its clause, its reason and how often it occurs.
 
-    Clauses that are unknown only because of another one do not count. The worst margin represents all scenarios.
-    Reasons that differ only in measured numbers ("it took 8.14 s") are one cause.
-    ``errors`` maps the faults in users' code that have been printed to their numbers, which take the place of reasons.
+    Clauses that are unknown only because of another one do not count. The line shows the worst margin of all its
+    scenarios. Reasons that differ only in measured numbers ("it took 8.14 s") are one cause. ``errors`` maps the
+    printed faults in users' code to their numbers, which replace reasons.
     """
     groups: dict[tuple[Outcome, str, str], list[tuple[ClauseSpec, ClauseJudged]]] = {}
     for scenario in scenarios:

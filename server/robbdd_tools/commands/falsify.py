@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from robbdd_tools.run.results import ScenarioResult
 
 PAUSE = 5.0
-"""Seconds between two notes on the progress."""
+"""Seconds between two lines of progress."""
 FRESH, FRESH_SEED = 10, 1_000_003
-"""So many executions with other seeds show how often the failure occurs."""
+"""The failure is repeated this many times, with seeds that follow from ``FRESH_SEED``, to see how often it occurs."""
 MOST_SHOWN = 5
 
 
@@ -39,7 +39,7 @@ MOST_SHOWN = 5
 class FalsifyOptions:
     """The options of ``robbdd falsify``.
 
-    ``nominal`` maps variables to the values from which the search begins, if not the middle of their range.
+    ``nominal`` maps variables to the values at which the search begins; by default, the middle of their range.
     """
 
     path: Path
@@ -52,7 +52,7 @@ class FalsifyOptions:
 
 
 def falsify(options: FalsifyOptions) -> int:
-    """Search and print the failure. Returns 0 if none was found, 1 if one was, 2 if the search cannot be made."""
+    """Search and print the failure. Returns 0 if none was found, 1 if one was found, 2 if the search failed."""
     try:
         study = load_study(options.path)
         errors = [one for one in study.findings if one.is_error]
@@ -130,7 +130,7 @@ def _report(study: Study, runs: PointRuns, nominal: Point, found: Failure, optio
 
 
 def _rows(study: Study, runs: PointRuns, nominal: Point, found: Failure) -> Iterator[str]:
-    """Yield a table of the points, one variable in a line."""
+    """Yield a table of the points, one line for each variable."""
     assert found.first is not None
     assert found.nearest is not None
     points = (nominal, found.passing, found.nearest.point, found.first.point)
@@ -199,7 +199,7 @@ def _nominal(study: Study, stated: Mapping[str, float]) -> Point:
 
 
 class _Notes:
-    """Prints the number of executions now and then."""
+    """Prints the number of executions every ``PAUSE`` seconds."""
 
     def __init__(self) -> None:
         self._shown = monotonic()

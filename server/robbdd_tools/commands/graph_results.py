@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def graph_with_results(model: ModelFile, path: Path, results: str | None) -> BuiltGraph | None:
     """Return the graph of a model with the results of a run.
 
-    ``results`` is a results file or a run of the project's store; without it, no results are added. If the results
-    cannot be used, the problem is printed and ``None`` is returned.
+    ``results`` is a results file or a run of the project's store; if it is missing, no results are added. If the
+    results cannot be used, the problem is printed and ``None`` is returned.
     """
     from robbdd_tools.graph.write.run_results import BadResults, add_results, read_results
 

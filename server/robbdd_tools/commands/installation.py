@@ -101,7 +101,7 @@ def editor() -> str:
 
 
 def words() -> str:
-    """Return the number of the catalog's words. Raises ``Unavailable`` if words of other packages are left out."""
+    """Return the number of the catalog's words. Raises ``Unavailable`` if it leaves out words of other packages."""
     catalog = load_catalog()
     if catalog.problems:
         raise Unavailable("\n".join(catalog.problems), "update or uninstall the packages that are named")

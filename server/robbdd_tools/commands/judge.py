@@ -36,8 +36,8 @@ class JudgeOptions:
     - ``paths``: the edited models.
     - ``store``: the store of runs.
     - ``report``: the output file.
-    - ``selection``: selects the scenario that a log is of.
-    - ``names``: how the names and times of a log are read.
+    - ``selection``: selects the scenario that the robot executed in the log.
+    - ``names``: the settings for names and times of a log.
     - ``keep``: false if the judgement of a log is not stored.
     """
 
@@ -51,7 +51,7 @@ class JudgeOptions:
 
 
 def judge(options: JudgeOptions) -> int:
-    """Judge by a model's clauses and print the verdicts. Return the exit code as ``robbdd run`` does."""
+    """Judge by a model's clauses and print the verdicts. Return the same exit code as ``robbdd run``."""
     work = _judge_log if is_log(Path(options.run)) else _judge
     return report_problems(Outputs(report=options.report), viewer=False, work=lambda: work(options))
 

@@ -17,8 +17,7 @@ from robbdd_tools.workbench.named_files import NotAModel, named_files
 def format_models(paths: Sequence[Path], check: bool) -> int:
     """Format files and the models and studies in folders.
 
-    With ``check``, no file is written: the files that would change are listed, and if there are any, the exit code is
-    1.
+    With ``check``, no file is written. The files that would change are listed, and the exit code is 1 if there are any.
     """
     try:
         files = named_files(paths, (STUDY,))

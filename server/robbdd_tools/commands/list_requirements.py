@@ -1,4 +1,4 @@
-"""``robbdd requirements``: the coverage of requirements by scenarios and stored runs; files of other tools."""
+"""``robbdd requirements``: show the coverage of requirements by scenarios and runs; exchange files with other tools."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`]*[/#:]")
 def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | None, *, links_only: bool) -> int:
     """Print the coverage of the requirements of models, and write it to ``output``; return the exit code.
 
-    The suffix of ``output`` selects ReqIF, a page (HTML) or CSV. The exit code is 1 unless each requirement is verified
-    and, without ``links_only``, held in the last runs.
+    The suffix of ``output`` selects ReqIF, a page (HTML) or CSV. The exit code is 1 unless a scenario verifies each
+    requirement and, without ``links_only``, each held in the last runs.
     """
     try:
         model = load_all(paths)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from robbdd_tools.commands.judge import JudgeOptions
 
 QUIET = 10.0
-"""Seconds without a new record after which a followed recording has ended."""
+"""A followed recording counts as ended after this many seconds without a new record."""
 
 
 def allow_log(parser: argparse.ArgumentParser) -> None:

@@ -43,7 +43,7 @@ class _Expendable:
 
 @contextmanager
 def output_may_be_lost() -> Generator[None]:
-    """Ignore failures of standard output and error in the block."""
+    """Ignore failures of standard output and standard error within the block."""
     before = sys.stdout, sys.stderr
     # Outside of failures, they behave as the streams themselves.
     output: Any = _Expendable(sys.stdout)

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from robbdd_tools.run.run_policy import Policy
 
 PAUSE = 5.0
-"""Seconds between two notes on the progress."""
+"""Seconds between two lines of progress."""
 MOST_SHOWN = 10
-"""So many executions that fail without a fault are listed."""
+"""At most this many executions that fail without a fault are listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class MutateOptions:
 def mutate(options: MutateOptions) -> int:
     """Execute models with faults and print the matrix of faults and clauses.
 
-    Returns 0 if every fault is noticed in all executions, 1 if one is not, 2 if the executions show nothing.
+    Returns 0 if every fault is noticed in all executions, 1 if some fault is not, 2 if the executions show nothing.
     """
     return report_problems(Outputs(report=options.json), viewer=False, work=lambda: _mutate(options))
 
@@ -89,7 +89,7 @@ def _mutate(options: MutateOptions) -> int:
 
 
 def _follow(mutation: Mutation) -> int:
-    """Execute everything and print the progress. Return the number of the signal that ended it, or 0."""
+    """Execute everything and print the progress. Return the number of the signal that ended the work, or 0."""
     ended_by = 0
 
     def cancel(number: int) -> None:

@@ -1,4 +1,4 @@
-"""The pass rates of a run of many scenarios as lines of its report."""
+"""The pass rates of a run with many scenarios, as lines of its report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MAX_LEVELS = 10
 def rate_lines(scenarios: Sequence[ScenarioResult]) -> list[str]:
     """Return the pass rate of all scenarios, then those of each factor with several levels.
 
-    Of a factor with more than ``MAX_LEVELS`` levels, those with the lowest rates are listed.
+    If a factor has more than ``MAX_LEVELS`` levels, only those with the lowest rates are listed.
     """
     if not scenarios:
         return []
@@ -33,7 +33,7 @@ def rate_lines(scenarios: Sequence[ScenarioResult]) -> list[str]:
 
 
 def level_lines(levels: Sequence[LevelRate]) -> list[str]:
-    """Return the rates of the levels of one factor; of more than ``MAX_LEVELS`` levels, those with the lowest rates."""
+    """Return the rates of one factor's levels; if there are more than ``MAX_LEVELS`` levels, only the lowest rates."""
     shown = levels if len(levels) <= MAX_LEVELS else sorted(levels, key=lambda one: one.share)[:MAX_LEVELS]
     lines = [f"  {level_line(level)}" for level in shown]
     if len(shown) < len(levels):

@@ -36,7 +36,7 @@ class ResumeOptions:
 
 
 def resume(options: ResumeOptions) -> int:
-    """Execute the open scenarios of a run; return the exit code as ``robbdd run`` does."""
+    """Execute the open scenarios of a run; return the same exit code as ``robbdd run``."""
     return report_problems(options.outputs, viewer=options.viewer, work=lambda: _resume(options))
 
 

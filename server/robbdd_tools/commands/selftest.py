@@ -172,4 +172,4 @@ TESTS: Mapping[str, Callable[[Path], str]] = {
     "rendering": rendering,
     "server": server,
 }
-"""Tests in execution order: the first one creates the folder that the others use."""
+"""The tests in execution order. The first one creates the folder that the others use."""

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from robbdd_tools.run.study_reader import StudyReader
 
 RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
-"""Exit codes of a required pass rate."""
+"""Ruling on a required pass rate → exit code."""
 INTERRUPTED = "the study was interrupted"
 
 
@@ -66,7 +66,7 @@ def run_study(options: StudyOptions) -> int:
     """Execute the open executions of a study.
 
     Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end. With a
-    required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if the executions do not tell.
+    required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if there are too few executions to decide.
     """
     return explained(lambda: _run_study(options))
 
@@ -100,7 +100,7 @@ def clean_study(path: Path, store: Path | None, *, failures_stay: bool, everythi
 
 
 def explained(work: Callable[[], int]) -> int:
-    """Return the exit code of some work. If it fails, print the reason."""
+    """Execute some work and return its exit code. If it fails, print the reason."""
     try:
         return work()
     except RobbddError as error:
@@ -166,9 +166,9 @@ def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:
 
 
 def _follow(run: StudyRun) -> int:
-    """Execute the study and print its progress. Return the number of the signal that ended it, or 0.
+    """Execute the study and print its progress. Return the number of the signal that ended the study, or 0.
 
-    The first Ctrl-C lets executions in progress finish; the second one, and any other signal, does not.
+    After the first Ctrl-C, executions in progress finish. A second one, or any other signal, ends them.
     """
     ended_by = 0
     display = StudyDisplay(run)

@@ -1,4 +1,4 @@
-"""Show the progress of a study: drawn on a terminal, as a line from time to time elsewhere."""
+"""Show the progress of a study: drawn in place on a terminal, elsewhere as a line from time to time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 PAUSE = 10.0
 """Seconds between two lines of progress."""
 REDRAWN = 2
-"""How often per second the progress is drawn again."""
+"""How many times per second the progress is redrawn."""
 MOST_WORKERS = 16
 """Maximum number of workers that are listed."""
 BAR = 40
@@ -39,8 +39,8 @@ BAR = 40
 class StudyDisplay:
     """Shows the progress of a study on standard error. Use it as a context manager.
 
-    On a terminal whose cursor can be moved, all of it is drawn in place; elsewhere, a line is printed every ``PAUSE``
-    seconds, without the workers.
+    If the terminal can move its cursor, the progress is redrawn in place. Otherwise, a line without the workers is
+    printed every ``PAUSE`` seconds.
     """
 
     def __init__(self, run: StudyRun) -> None:
@@ -66,7 +66,7 @@ class StudyDisplay:
             self._live.stop()
 
     def update(self, progress: StudyProgress) -> None:
-        """Take the latest progress."""
+        """Show the latest progress."""
         self._latest = progress
         if self._live is None and monotonic() - self._printed >= PAUSE:
             self._printed = monotonic()
@@ -81,7 +81,7 @@ class StudyDisplay:
                 os.write(sys.stderr.fileno(), f"robbdd: {text}\n".encode())
 
     def drawn(self) -> RenderableType:
-        """Return what is drawn on a terminal: the progress, the verdicts so far, and the work of each worker."""
+        """Return the drawing for a terminal: the progress, the verdicts so far, and the work of each worker."""
         progress = self._latest or StudyProgress(self._run.total, self._run.tally)
         bar = Table.grid(padding=(0, 1))
         bar.add_row(ProgressBar(progress.total, progress.finished, width=BAR), Text(progress_words(progress)))

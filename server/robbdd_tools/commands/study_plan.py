@@ -1,4 +1,4 @@
-"""``robbdd study plan``: print how many executions show what a study is to show."""
+"""``robbdd study plan``: print how many executions a study needs for a given precision or difference."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class PlanOptions:
 
     - ``rate``: the expected pass rate.
     - ``width``: the wanted width of its interval.
-    - ``difference``: the change of the pass rate that a comparison is to show.
+    - ``difference``: the change of the pass rate that a comparison has to show.
     - ``discordance``: the share of pairs whose verdict differs; by default, the size of the difference.
     """
 

@@ -22,7 +22,7 @@ QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 
 def print_outcomes(path: Path, store: Path | None, by: Sequence[str], plot: Path | None) -> int:
-    """Print how many executions ended how, by the levels of factors, and draw it if asked to; return the exit code."""
+    """Print the counts of outcomes by the levels of factors, and draw them if asked to; return the exit code."""
 
     def show(rows: Iterable[Row]) -> None:
         table = outcome_table(rows, by)

@@ -1,4 +1,4 @@
-"""Print how a study stands: its pass rate so far, with its interval, and the clause that fails most often."""
+"""Print the state of a study: its pass rate so far, with its interval, and the clause that fails most often."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def standing(tally: Tally) -> Iterator[str]:
-    """Yield the lines about the verdicts so far; nothing before the first one."""
+    """Yield the lines about the verdicts so far; none before the first verdict."""
     if not tally.finished:
         return
     yield level_line(LevelRate("all executions", tally.holding, tally.finished))
@@ -27,7 +27,7 @@ def standing(tally: Tally) -> Iterator[str]:
 
 
 def progress_words(progress: StudyProgress) -> str:
-    """Return the number of finished executions, the rate, and the time that is left."""
+    """Return the number of finished executions, the rate, and the remaining time, in words."""
     counted = f"{progress.finished:,} of {progress.total:,} executions"
     if progress.left is None:
         return counted

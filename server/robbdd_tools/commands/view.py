@@ -64,7 +64,7 @@ def _view(path: Path, name: str | None, seed: int | None, output: Path | None, s
 
 
 def _index(manifest: Manifest, name: str | None) -> int | None:
-    """Return the number of the first scenario that has a name, or whose variant has it."""
+    """Return the number of the first scenario with this name, or with a variant of this name."""
     for index, scenario in enumerate(manifest.scenarios):
         if name is None or name in (scenario.name, _variant(scenario.name)):
             return index

@@ -31,7 +31,7 @@ class ReportOptions:
     """The options of ``robbdd report``.
 
     - ``word``: names a run, a ``.study`` file or a folder with its results; ``path`` is in the run's project.
-    - ``again``: so many of a study's worst executions are executed again, by ``policy``, for pictures and replays.
+    - ``again``: how many of a study's worst executions are executed again, under ``policy``, for pictures and replays.
     """
 
     word: str

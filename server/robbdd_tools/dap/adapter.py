@@ -1,4 +1,4 @@
-"""A debug adapter: it answers the requests of one editor and passes on the messages of one debugged execution."""
+"""A debug adapter: it answers one editor's requests and forwards the messages of one debugged execution."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Refused(RobbddError):
 
 
 class DebugAdapter:
-    """The adapter of one session. ``serve`` returns when the editor has disconnected; then nothing is left running."""
+    """The adapter of one session. ``serve`` returns when the editor has disconnected. It leaves nothing running."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
@@ -184,7 +184,7 @@ class DebugAdapter:
 
     @property
     def _first_line(self) -> int:
-        """The number to add to a line of the client, so that lines count from 1."""
+        """The number to add to a client's line so that lines count from 1."""
         return 0 if self._client.get("linesStartAt1", True) else 1
 
     def _configuration_done(self, _: Mapping[str, Any]) -> None:
@@ -195,7 +195,7 @@ class DebugAdapter:
         self._consumer.start()
 
     def _consume(self, run: Run) -> None:
-        """Hand over the messages of the run, in the thread that executes it."""
+        """Forward the messages of the run, in the thread that executes it."""
         with run:
             for message in run.messages():
                 self._events.put(lambda message=message: self._take(run, message))
@@ -251,7 +251,7 @@ class DebugAdapter:
 
     @property
     def _spec(self) -> ScenarioSpec:
-        """The scenario as it is executed, with the lines of its feature. Raises ``Refused``."""
+        """The executed scenario, with the lines of its feature. Raises ``Refused``."""
         return self._launched().spec if self._run is None else self._run.manifest.scenarios[0]
 
     @property
@@ -307,7 +307,7 @@ class DebugAdapter:
             self._run.order(order)
 
     def _attach_python(self, port: int) -> None:
-        """Let the editor attach a debugger of Python code, which the process waits for."""
+        """Ask the editor to attach a debugger of Python code. The process waits for it."""
         if self._client.get("supportsStartDebuggingRequest"):
             name = f"{self._title} (Python)"
             configuration = {"type": "robbdd", "request": "attach", "name": name, "port": port, "justMyCode": True}
@@ -317,7 +317,7 @@ class DebugAdapter:
             self._output(f"waiting for a debugger of Python code at {DEBUG_HOST}:{port}")
 
     def _write_scene(self, request: Mapping[str, Any]) -> None:
-        """Let the process write the execution so far. ``_show_scene`` answers the request."""
+        """Order the process to write the execution so far. ``_show_scene`` answers the editor's request."""
         _ = self._state
         assert self._run is not None
         path = Path(self._folder.name, f"{request.get('seq')}.json")

@@ -15,7 +15,7 @@ FILTERS: list[dict[str, Any]] = [
     {"filter": str(moment), "label": label, "description": description, "default": moment is Moment.NEGATIVE}
     for moment, (label, description) in LABELS.items()
 ]
-"""The filters that an editor offers beside its breakpoints."""
+"""The exception filters that an editor offers next to its breakpoints."""
 
 
 class InvalidCondition(ValueError):
@@ -23,8 +23,9 @@ class InvalidCondition(ValueError):
 
 
 def moments_of(condition: str | None) -> tuple[str, ...]:
-    """Return the moments that a condition such as ``opens or closes`` names; without one, all. Raises
-    ``InvalidCondition``.
+    """Return the moments that a condition such as ``opens or closes`` names, or all if it is empty.
+
+    Raises ``InvalidCondition``.
     """
     words = [word.strip() for word in (condition or "").replace(",", " or ").split(" or ") if word.strip()]
     unknown = [word for word in words if word not in tuple(Moment)]

@@ -1,4 +1,4 @@
-"""The arguments of *launch*: a model and what selects one of its executions."""
+"""The arguments of *launch*: a model and the selection of one of its executions."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from robbdd_tools.protocol.run_folder import DEBUG_HOST
 
 
 def serve_stdio() -> None:
-    """Serve the process that has started this one, until it disconnects. Everything else prints to standard error."""
+    """Serve the process that has started this one, until it disconnects. All other output goes to standard error."""
     received, sent = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     sys.stdout = sys.stderr

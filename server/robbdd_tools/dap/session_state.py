@@ -37,7 +37,7 @@ class Breakpoints:
     _count: int = 0
 
     def set_in(self, path: Path, stated: Sequence[tuple[int, str | None]]) -> list[dict[str, Any]]:
-        """Replace the breakpoints of a file, each given by its line and its condition; return the answers to them."""
+        """Replace the breakpoints of a file, given by their lines and conditions; return an answer for each of them."""
         own: list[SetBreakpoint] = []
         answers: list[dict[str, Any]] = []
         for line, condition in stated:
@@ -54,7 +54,7 @@ class Breakpoints:
         return answers
 
     def order(self, spec: ScenarioSpec) -> SetBreakpoints:
-        """Return the order that sets these breakpoints in an execution."""
+        """Return the order that sets all breakpoints in an execution."""
         every = [one for own in self._by_file.values() for one in own]
         placed = ((line, part, one.moments) for one in every for line, part in clause_places(spec, one.clauses))
         return SetBreakpoints(tuple(ClauseBreakpoint(*one) for one in placed), self.everywhere)
@@ -82,7 +82,7 @@ def source_path(source: Mapping[str, Any]) -> Path:
 
 
 class VariableHandles:
-    """Numbers by which the editor asks for the variables inside a scope or a variable; valid during one pause."""
+    """Numbers with which the editor requests the variables in a scope or a variable. They are valid for one pause."""
 
     def __init__(self) -> None:
         self._inner: list[tuple[Variable, ...]] = []
@@ -99,6 +99,6 @@ class VariableHandles:
         return len(self._inner)
 
     def variables(self, number: object) -> tuple[Variable, ...]:
-        """Return the variables with a number; none for an old number."""
+        """Return the variables that have a number; none if the number is from an earlier pause."""
         known = isinstance(number, int) and 0 < number <= len(self._inner)
         return self._inner[number - 1] if isinstance(number, int) and known else ()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def stack_frames(
     scenario: DebuggedScenario, spec: ScenarioSpec, paused: Paused, first_line: int
 ) -> list[dict[str, Any]]:
-    """Return the frames; the id of a clause's frame is 0. ``first_line`` is subtracted from lines counted from 1."""
+    """Return the frames; the id of a clause's frame is 0. Lines count from 1, less ``first_line``."""
     frames: list[dict[str, Any]] = []
     clause = next((one for one in spec.clauses if one.line == paused.line), None)
     if clause is not None:

@@ -1,4 +1,4 @@
-"""The variables of a pause: clause, world and events. Expressions are names of them, and nothing else."""
+"""The variables during a pause: clause, world and events. An expression can only be the name of a variable."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class Variable:
 
 
 def scopes_of(paused: Paused, spec: ScenarioSpec, line: int | None) -> list[Variable]:
-    """Return the scopes of a stack frame: of the clause on a feature line or, without one, of the scenario."""
+    """Return the scopes of a stack frame: of the clause on a feature line or, if there is none, of the scenario."""
     about = _clause_scope(paused, spec, line) if line is not None else _scenario_scope(spec)
     return [about, Variable("World", "", tuple(_world(paused))), Variable("Events", "", tuple(_events(paused, spec)))]
 
 
 def evaluate(expression: str, paused: Paused, spec: ScenarioSpec) -> Variable:
-    """Return the variable that a name or a path of names means. Raises ``UnknownName``."""
+    """Return the variable that a name or a path of names denotes. Raises ``UnknownName``."""
     words = expression.strip()
     if not EXPRESSION.fullmatch(words):
         raise UnknownName(f"'{words}' is not a name: {NO_EXPRESSION}")

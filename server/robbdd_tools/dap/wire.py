@@ -1,6 +1,6 @@
 """Messages of the Debug Adapter Protocol on a pair of byte streams.
 
-There is no maintained library with adapters' types: debugpy's are private, others are generated for clients only.
+No maintained library has types for adapters: those of debugpy are private, others are for clients only.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class BrokenMessage(Exception):
 
 
 class Wire:
-    """Reads the client's messages, and numbers and writes those of the adapter."""
+    """Reads the client's messages; numbers and writes the adapter's messages."""
 
     def __init__(self, received: BinaryIO, sent: BinaryIO) -> None:
         self._received = received
@@ -44,7 +44,7 @@ class Wire:
             yield message
 
     def write(self, kind: str, **fields: Any) -> int:
-        """Send a message; return its number. A client that is gone gets nothing."""
+        """Send a message; return its number. If the client has gone, nothing is sent."""
         with self._writing:
             self._number += 1
             content = json.dumps({"seq": self._number, "type": kind, **fields}).encode()

@@ -71,7 +71,7 @@ def _summary(clause: ClauseResult) -> str:
 
 
 def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[str]:
-    """Yield each clause with its place. A clause that is unknown because of another one names that one."""
+    """Yield each clause with its place. If another clause makes it unknown, its line names that clause."""
     named = [(title(clause.name, clause.sentence), clause) for clause in failed]
     for clause, because in zip(failed, consequences(named), strict=True):
         yield f"{SIGNS[clause.verdict]} {printable(clause.name)}: {printable(plain_sentence(clause.sentence))}"

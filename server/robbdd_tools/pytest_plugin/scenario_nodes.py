@@ -52,7 +52,7 @@ class ModelNode(pytest.File):
     file: ModelFile | None = None
     """The collected model, if it is free of errors and has scenarios."""
     unselected: SelectionError | None = None
-    """Why the selection excludes the whole model, if so."""
+    """The reason why the selection excludes the whole model; ``None`` if it does not."""
 
     def collect(self) -> Iterator[StoryNode]:
         """Yield the stories that have a selected scenario."""

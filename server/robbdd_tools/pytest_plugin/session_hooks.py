@@ -40,7 +40,7 @@ MODELS = (".bdd", ".bddx")
 """File name endings that are collected in folders; graphs are collected only when named."""
 POINTER, LOCK = "run.json", "lock"
 AGENTS_OF_A_WORKER = 1000
-"""Number of agent numbers, which name logs, reserved for each worker of pytest-xdist."""
+"""Each worker of pytest-xdist gets this many numbers for its agents. The numbers name logs."""
 WORDS = {("setup", "unknown"): ("error", "E", "UNKNOWN"), ("call", "violated"): ("failed", "F", "VIOLATED")}
 """Phase and verdict → pytest's category, letter and word."""
 MARKER = (
@@ -161,7 +161,7 @@ class Hooks:
             shutil.rmtree(self._shared, ignore_errors=True)
 
     def _refuse_unknown_choices(self) -> None:
-        """Raise ``UsageError`` if ``--robbdd-bhv`` names what does not exist or ``--robbdd-scenex`` fits nothing."""
+        """Raise ``UsageError`` if ``--robbdd-bhv`` has an unknown name, or ``--robbdd-scenex`` fits no scenario."""
         selection, models = self._options.selection, [file.acceptance for file in self._files]
         try:
             refuse_unknown(models, selection.default_substitutions)
@@ -177,7 +177,7 @@ class Hooks:
         return model_files(node.file for node in self._models if node.file is not None)
 
     def _doubled(self, items: Sequence[ScenarioItem]) -> Iterator[ScenarioItem]:
-        """Yield the tests whose scenarios the common plan of all models takes from another model."""
+        """Yield the tests whose scenarios the common plan of all models takes from a different model."""
         files = self._files
         if len(files) < 2 or not items:
             return
