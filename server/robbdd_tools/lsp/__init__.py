@@ -1,1 +1,1 @@
-"""The language server. It converts, publishes and schedules, but contains no knowledge of the language itself."""
+"""The language server. It converts, publishes and schedules, but knows nothing of the language itself."""

@@ -1,4 +1,4 @@
-"""The run that is in progress. A server has at most one."""
+"""The run in progress. A server has at most one."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class ActiveRun:
     """A run from the time it is requested.
 
-    ``progress`` is its progress token, which is unique among runs. ``judged`` are its scenarios by their position in
-    the manifest.
+    ``progress`` is its progress token, which is unique among runs. ``judged`` maps positions in the manifest to the
+    run's scenarios.
     """
 
     options: RunOptions

@@ -1,4 +1,4 @@
-"""The only thread that uses the project. It does urgent work in the order of messages, and other work after it."""
+"""The only thread that uses the project. It does urgent work first, in the order of messages, then other work."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Result = TypeVar("Result")
 
 
 class Urgency(IntEnum):
-    """How soon work is done; work of a smaller value interrupts that of a larger one."""
+    """How soon work is done. Work with a smaller value interrupts work with a larger one."""
 
     URGENT = 0
-    """Edits, and requests that somebody waits for."""
+    """Edits, and requests that the user waits for."""
     LATER = 1
     """Results that are shown without a request, such as diagnostics."""
     IDLE = 2
@@ -39,9 +39,9 @@ class _Job:
 class AnalysisThread:
     """Executes the most urgent work first, and work of the same urgency in the order of arrival.
 
-    At a checkpoint, work is interrupted by more urgent work, and work whose caller was cancelled ends. So a hover
-    never waits for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the
-    next item is an edit that replaces the same text.
+    At a checkpoint, more urgent work interrupts work, and work whose caller was cancelled ends. So a hover never waits
+    for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the next item is
+    an edit of the same text that replaces it.
     """
 
     def __init__(self) -> None:

@@ -1,6 +1,6 @@
 """The client's settings for the server.
 
-The server requests them or, if the client cannot answer, uses those it sends.
+The server requests them. If the client cannot answer, the server uses the settings that the client sends.
 """
 
 from __future__ import annotations
@@ -72,14 +72,14 @@ def _entries(value: object) -> dict[str, object] | None:
 
 
 def _texts(value: object) -> tuple[str, ...] | None:
-    """Return the texts of a list, which may be missing; ``None`` if it has another form."""
+    """Return the texts of a list. A missing list is empty; the result is ``None`` for any other value."""
     entries = cast("list[object]", value or []) if isinstance(value or [], list) else [None]
     texts = tuple(entry for entry in entries if isinstance(entry, str))
     return texts if len(texts) == len(entries) else None
 
 
 def _named_texts(value: object) -> dict[str, str] | None:
-    """Return an object whose values are texts, which may be missing; ``None`` if it has another form."""
+    """Return an object with texts as values. A missing one is empty; the result is ``None`` for any other value."""
     entries = _entries(value or {})
     texts = {name: text for name, text in (entries or {}).items() if isinstance(text, str)}
     return texts if entries is not None and len(texts) == len(entries) else None

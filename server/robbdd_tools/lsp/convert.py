@@ -69,7 +69,7 @@ _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Converter:
-    """The conversions for one client. ``encoding`` is the one that was agreed at initialisation.
+    """The conversions for one client. ``encoding`` is the encoding agreed at initialisation.
 
     If ``with_pages`` is true, each diagnostic links to the page about its code.
     """

@@ -1,4 +1,4 @@
-"""Protocol methods that lead from one place to others, for example definition, implementation and call hierarchy."""
+"""Protocol methods that go from one place to others: definition, implementation, call hierarchy and so on."""
 
 from __future__ import annotations
 

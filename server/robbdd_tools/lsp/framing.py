@@ -2,8 +2,8 @@
 
 A frame consists of a length (4 bytes, big endian) and a pickled object. The server sends tuples of ``Request`` and
 ``Forget``, in which a shared text is stored once. The process sends ``Begun`` and ``Answer``. Both ends belong to the
-same installation. A request replaces an older one for the same file, even while that is being validated, but only a
-limited number of times. The server sends ``Edited`` to the other process, which answers with ``Rejudged``.
+same installation. A request replaces an older one for the same file, even during the validation, but only a limited
+number of times. The server sends ``Edited`` to the other process, which answers with ``Rejudged``.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ class Answer:
     """The findings about a file and its imports, or the internal error that prevented them.
 
     For a surveyed file, ``reached`` are the files that it imports, found or missing, and the files that import it.
-    ``together`` are the file and those that import it and are imported by it: the findings are about all of them.
-    ``documents`` are the texts to which the findings refer. ``named`` are the files that each of ``together`` names and
-    that are not models, such as Python code.
+    ``together`` are the file and the files that both import it and are imported by it; the findings are about all of
+    these. ``documents`` are the texts to which the findings refer. ``named`` maps each file of ``together`` to the
+    files that it names and that are not models, such as Python code.
     """
 
     revision: int
@@ -89,7 +89,7 @@ class Edited:
     """The texts of the open files after an edit that concerns the model ``uri``.
 
     - ``store``: the folder of the model's stored runs.
-    - ``executions``: the shown executions: for each run, their numbers.
+    - ``executions``: the numbers of the shown executions, for each run.
     - ``sources``: the unsaved texts of other files, such as steps.
     """
 
@@ -106,8 +106,7 @@ class Rejudged:
     """Executions of a model whose clauses were re-judged, or that cannot be re-judged.
 
     - ``executions``: results by run and number of the execution.
-    - ``done`` and ``total``: how many of the executions that the edits concern have been answered, and how many
-      there are.
+    - ``total``: the number of executions that the edits concern. ``done``: how many of them have been answered.
     - ``problem``: why nothing was judged.
     """
 

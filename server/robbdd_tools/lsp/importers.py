@@ -38,7 +38,7 @@ class Importers:
         self._known: dict[str, tuple[float, ImportGraph]] = {}
         self._looking: asyncio.Task[None] | None = None
         self.elsewhere = Elsewhere()
-        """The names declared in files of the workspace, loaded or not."""
+        """The names declared in files of the workspace, whether loaded or not."""
 
     async def graph(self, uri: str | None = None) -> ImportGraph:
         """Return the imports of the workspace's files.

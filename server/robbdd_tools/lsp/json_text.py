@@ -47,7 +47,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A kept passage, with the values on which it depends besides the declaration."""
+    """A kept passage, with the values on which it depends in addition to the declaration."""
 
     convert: Converter
     column: int
@@ -72,8 +72,9 @@ class Passages:
     ) -> str:
         """Return the JSON objects of a declaration at an offset of a document, separated by commas.
 
-        If the declaration or the ``key`` differs from the last time, ``make`` returns the objects. Its arguments are a
-        document with the text of the declaration, and the offset of the declaration in it.
+        If the declaration or the ``key`` has changed since the last call, ``make`` is called and returns the objects.
+        Its arguments are a document with the text of the declaration, and the offset of the declaration in this
+        document.
         """
         offset, declaration = placed
         line = document.line_at(offset)

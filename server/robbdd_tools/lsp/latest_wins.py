@@ -8,14 +8,14 @@ from typing import Any
 
 Work = Callable[[], Coroutine[Any, Any, None]]
 MAX_REPLACED = 8
-"""Replacements in a row: about a second of fast typing, after which a task may finish and show its findings."""
+"""After this many replacements in a row, about a second of fast typing, a task may finish and show its findings."""
 
 
 class LatestWins:
     """Runs one task at a time for each key.
 
-    A newer task replaces the running one. After ``MAX_REPLACED`` replacements, the newer task waits for the end of the
-    running one. ``spawn`` starts a coroutine as a task.
+    A newer task replaces the running one. After ``MAX_REPLACED`` replacements, the newer task waits until the running
+    one ends. ``spawn`` starts a coroutine as a task.
     """
 
     def __init__(self, spawn: Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]) -> None:

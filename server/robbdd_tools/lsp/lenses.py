@@ -33,15 +33,16 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 DEBUG = "robbdd.debugScenario"
-"""Command of clients that announce ``debugging``: it begins to debug an execution, with breakpoints on clauses."""
+"""Command of clients that announce ``debugging``. It begins to debug an execution, with breakpoints on clauses."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Runnable:
     """A scenario variant, or an execution of one, that can be run.
 
-    ``choice`` are the options of the command that runs it, ``debugged`` those of the command that debugs it. ``number``
-    is the number of its scenarios, if known. ``variant`` is the IRI of the variant; ``None`` for an execution.
+    ``choice`` has the options of the command that runs it; ``debugged``, the options of the command that debugs it.
+    ``number`` is the number of its scenarios, if known. ``variant`` is the IRI of the variant; ``None`` for an
+    execution.
     """
 
     uri: str
@@ -58,7 +59,7 @@ class _Runnable:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Data on which the lenses of a variant depend besides its text. Without an IRI it has no lenses."""
+    """Data on which the lenses of a variant depend in addition to its text. A variant without an IRI has no lenses."""
 
     iri: str | None
     number: int | None

@@ -1,7 +1,8 @@
 """The texts of the open documents, as the client has them.
 
-They replace those of pygls. It also ends lines at form feeds and at Unicode's line separators, but the protocol does
-not: later edits would change the wrong place. It also takes several milliseconds for a change of a long text.
+They replace the texts of pygls, for two reasons. Unlike the protocol, pygls ends lines at form feeds and at Unicode's
+line separators, so that later edits would change the wrong place. And pygls takes several milliseconds for a change of
+a long text.
 """
 
 from __future__ import annotations

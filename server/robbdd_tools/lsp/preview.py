@@ -82,5 +82,5 @@ def _remark(made: dict[str, Any], problem: str | None) -> str:
 
 
 def _headed(made: dict[str, Any], remark: str) -> str:
-    """Put a heading above a text; line numbers count it."""
+    """Put a heading above a text. Line numbers include the heading."""
     return f"# {remark}\n{made['text']}"

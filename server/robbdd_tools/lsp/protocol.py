@@ -24,7 +24,7 @@ _LOG = logging.getLogger(__name__)
 _Steps = Generator[Any, Any, None]
 """The handlers that pygls calls for a message, with their arguments."""
 _DOCUMENTS = frozenset((types.TEXT_DOCUMENT_DID_OPEN, types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE))
-"""Notifications about a document that the client names; its URI stands for the file while it is open."""
+"""Notifications about a document that the client names. While the document is open, its URI identifies the file."""
 
 
 class Protocol(LanguageServerProtocol):
@@ -39,7 +39,7 @@ class Protocol(LanguageServerProtocol):
     def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
         """End the server after everything is sent.
 
-        If the client does not read or work does not end, the server ends immediately.
+        If the client does not read, or if work does not end, the server ends immediately.
         """
         end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
@@ -188,8 +188,8 @@ class Protocol(LanguageServerProtocol):
 def with_canonical_uris(message: Any, spelling: Callable[[str], str] = str) -> Any:
     """Return a message in which each file has one canonical URI. The texts of documents are not changed.
 
-    ``spelling`` chooses among the URIs that lead to the same file. The new URI of a file that is renamed is not
-    replaced: only upper and lower case letters may change.
+    ``spelling`` chooses among the URIs of the same file. The new URI of a file that is renamed is not replaced: only
+    upper and lower case letters may change.
     """
     match message:
         case str():

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 GATHERING = 0.03
-"""Seconds in which several refreshes are combined."""
+"""Refreshes that are requested within this time (s) are combined."""
 SETTLING = 0.3
-"""Seconds after an edit within which other files are refreshed."""
+"""Other files are refreshed within this time (s) after an edit."""
 DIAGNOSTICS, COLOURS, HINTS, LENSES = "diagnostics", "semantic_tokens", "inlay_hint", "code_lens"
 
 

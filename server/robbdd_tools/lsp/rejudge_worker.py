@@ -1,7 +1,7 @@
-"""The process that compares stored executions with edited texts, and has their edited clauses re-judged.
+"""The process that compares stored executions with edited texts, and lets another process re-judge edited clauses.
 
 It reads ``Edited`` messages until its input ends, and answers each with ``Rejudged`` messages. A message replaces an
-older one about the same model, also while that is being judged. A second process judges the traces
+older one about the same model, even while the older one is being judged. A second process judges the traces
 (``agent/rejudge_edits.py``). Neither of them simulates, executes users' code, or writes into the project.
 """
 
@@ -45,9 +45,9 @@ GONE = f"the run is gone: {AGAIN}"
 STEP = 16
 """Maximum number of traces that are judged before a newer edit is noticed."""
 BATCH = 64
-"""Executions after which the next part of the results is sent."""
+"""Results are sent in parts of this many executions."""
 LOADED = 256
-"""Traces that are loaded before the first edit of a model."""
+"""At most this many traces are loaded before the first edit of a model."""
 
 
 @dataclass(slots=True)
@@ -115,7 +115,7 @@ class Worker:
     def _judged(
         self, place: StoredRun, alike: list[EditedExecution], digests: Digests
     ) -> dict[Execution, RejudgedExecution]:
-        """Return the results of executions that differ in seed only."""
+        """Return the results of executions that differ only in their seeds."""
         spec, first = alike[0].spec, alike[0]
         assert spec is not None
         traces = tuple(_trace(place, one.index, one.stored.seed) for one in alike)
@@ -156,7 +156,7 @@ class Worker:
             self.loaded.add(place.folder)
 
     def _forget_runs(self, store: Path, used: Container[Path]) -> None:
-        """Drop what is known of the runs of a store that are no longer shown."""
+        """Drop the data about those runs of a store that are no longer shown."""
         for folder in [path.parent for path in self.manifests if path.parent.parent == store]:
             if folder not in used:
                 del self.manifests[folder / MANIFEST]
@@ -176,7 +176,7 @@ class Worker:
 
 
 def _alike(executions: Iterable[EditedExecution]) -> Iterator[list[EditedExecution]]:
-    """Yield groups of executions that have the same scenario, and so differ in repetition and seed only."""
+    """Yield groups of executions that have the same scenario, so that they differ only in repetition and seed."""
     groups: dict[tuple[object, ...], list[EditedExecution]] = {}
     for one in executions:
         if one.spec is not None:

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 PAUSE = 0.03
-"""Seconds in which successive keys are combined."""
+"""Keystrokes within this time (s) are combined."""
 FIRST_PAUSE = 1.0
-"""Seconds after which the process is started for a document that has results but was not edited."""
+"""For a document that has results but was not edited, the process starts after this many seconds."""
 SHOWN_ABOVE = 100
-"""Number of executions above which the client shows progress."""
+"""The client shows progress if there are more executions than this."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.rejudge_worker import main; main()"
 _LOG = logging.getLogger(__name__)
@@ -50,7 +50,7 @@ class Rejudging:
         self._newest: dict[str, int] = {}
         """The revision of the latest request about each model."""
         self._repeated = 0
-        """The revision that was requested again, because the process died over it."""
+        """The revision that was requested again because the process died while judging it."""
         self._process: Process | None = None
         self._starting = asyncio.Lock()
         self._waiting: asyncio.Task[None] | None = None
@@ -60,7 +60,7 @@ class Rejudging:
         self._stopped = False
 
     def edited(self, uri: str, *, opened: bool = False) -> None:
-        """Re-judge the models that a document belongs to, soon. ``opened`` is true if it was opened, not edited."""
+        """Schedule the re-judging of a document's models. ``opened`` is true if the document was opened, not edited."""
         if self._stopped or not any(True for _ in self._server.results):
             return
         self._edited[uri] = None
@@ -76,7 +76,7 @@ class Rejudging:
             self.edited(uri, opened=True)
 
     def settings_changed(self) -> None:
-        """Remove what was judged where the setting ``robbdd.rejudge`` is off now, and judge where it is on."""
+        """Remove re-judged verdicts where the setting ``robbdd.rejudge`` is now off, and re-judge where it is on."""
         for model in [uri for uri in self.executions if not self._server.settings.rejudges(uri)]:
             self._asked.pop(model, None)
             self._replace(model, {})
@@ -160,7 +160,7 @@ class Rejudging:
             await self._died(list(self._asked.values()))
 
     async def _died(self, unanswered: Sequence[Edited]) -> None:
-        """Request again what the process has not answered; if it dies again, give up until the next edit."""
+        """Repeat the unanswered requests. If the process dies again, give up until the next edit."""
         _LOG.warning("the process that re-judges edits ended unexpectedly")
         newest = max(order.revision for order in unanswered)
         if newest > self._repeated:

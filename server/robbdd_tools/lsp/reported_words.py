@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 async def report_words(ls: RobbddServer) -> None:
-    """Show a message for each such word, with its package and the reason."""
+    """Show a message for each word that is left out, with its package and the reason."""
     # Not in a thread of its own: both threads would read the catalog, since the first edit needs it, too.
     catalog = await ls.analyse(lambda _: load_catalog(), Urgency.IDLE)
     for problem in catalog.problems:

@@ -1,4 +1,4 @@
-"""Common parts of all handlers: they catch errors and withhold answers about an outdated text."""
+"""Code that all handlers share: it catches errors and withholds answers about an outdated text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Handler = Callable[..., Any]
 
 @dataclass(eq=False)
 class _Waiting:
-    """A request in progress, with the document that it is about."""
+    """A request in progress, with the document that the request is about."""
 
     method: str
     uri: str

@@ -22,7 +22,7 @@ def requirement_lenses(
 ) -> Iterator[types.CodeLens]:
     """Yield the lenses of the requirements of a file, in text order.
 
-    A run has one model, so scenarios in several files cannot be run together.
+    As a run has only one model, scenarios in several files cannot be run together.
     """
     for one in coverage_of_file(snapshot, uri, findings):
         place = convert.range(document_of(snapshot, uri), one.requirement.span)

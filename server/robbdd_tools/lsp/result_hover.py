@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from robbdd_tools.run.store import RunStore, StoredRun
 
 REPLAY, HISTORY = "robbdd.showReplay", "robbdd.showHistory"
-"""Commands of clients that announce them."""
+"""Commands of the clients that announce support for them."""
 THUMBNAILS = "thumbnails"
 LARGEST = 60_000
-"""Maximum bytes of an embedded picture; clients read a hundred thousand characters of a text."""
+"""Maximum bytes of an embedded picture, because clients read only a hundred thousand characters of a text."""
 MAX_RUNS = 8
 """Maximum number of runs whose verdicts on a clause are listed."""
 MAX_PICTURES = 8
-"""Maximum number of clauses of a run whose worst violation is pictured."""
+"""Maximum number of clauses of a run that get a picture of their worst violation."""
 _LOG = logging.getLogger(__name__)
 
 

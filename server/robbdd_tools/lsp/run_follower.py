@@ -72,7 +72,7 @@ class RunFollower:
         self._ls.refreshes.want(LENSES)
 
     def summary(self) -> dict[str, Any]:
-        """Return the outcome of the run, for the answer to the client that requested it."""
+        """Return the outcome of the run, as the answer to the client's request."""
         outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
         counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
         total, cancelled = len(self._results.scenarios), self._active.cancelled

@@ -1,4 +1,4 @@
-"""The requests ``robbdd/history`` and ``robbdd/compare``: a clause in all stored runs, and two runs side by side.
+"""The requests ``robbdd/history`` and ``robbdd/compare``: show a clause in all stored runs, and compare two runs.
 
 The parameters of both contain the ``uri`` of a document in the project. The schemas ``history.schema.json`` and
 ``compare.schema.json`` in ``docs/schemas`` describe the answers.

@@ -39,8 +39,8 @@ def for_client(
 ) -> dict[str, Any]:
     """Return the parameters of the notification about a message of the run named ``run``.
 
-    ``cancelled`` is true for a clause that a cancelled run left open. ``because`` is the cause of a clause that is
-    unknown only because of another one.
+    ``cancelled`` is true for a clause that a cancelled run left open. If a clause is unknown only because of another
+    clause, ``because`` is this other clause.
     """
     fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
     match message:
@@ -83,7 +83,7 @@ def for_client(
 
 
 def cause_for_client(because: Consequence, spec: ScenarioSpec) -> dict[str, Any]:
-    """Return the clause that another clause of its scenario is unknown because of."""
+    """Return the cause of a clause that is unknown because of another clause of its scenario."""
     return {"clause": spec.clauses[because.position].iri, "position": because.position, "words": because.words}
 
 

@@ -55,8 +55,8 @@ class RunOptions:
     - ``where``, ``first``, ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs``: as for ``robbdd run``.
     - ``scenex``: the path of a ``.scenex``, absolute or from the folder of the model.
     - ``stop_on_failure``: execute nothing more after the first failure.
-    - ``debug``: execute all scenarios in one process without a time limit. It waits for a debugger, as the message
-      ``DebuggerAwaited`` says.
+    - ``debug``: execute all scenarios in one process without a time limit. The process waits for a debugger and
+      announces this by the message ``DebuggerAwaited``.
     - ``record``: render a picture of each violation.
     - ``token``: the name of the run in the messages about it.
     """

@@ -23,7 +23,7 @@ class RunProgress:
         await self._progress.begin("RobBDD run", cancellable=True)
 
     def report(self, ended: Mapping[Outcome, int], total: int) -> None:
-        """Report how many scenarios have ended; violated ones have failed, unknown ones have errored."""
+        """Report how many scenarios have ended: violated ones count as failed, unknown ones as errored."""
         done = sum(ended.values())
         named = ((ended.get(Outcome.VIOLATED, 0), "failed"), (ended.get(Outcome.UNKNOWN, 0), "errored"))
         words = ", ".join((f"{done}/{total} scenarios", *(f"{count} {name}" for count, name in named if count)))

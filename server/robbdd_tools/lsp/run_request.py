@@ -26,7 +26,8 @@ class RunText:
     """The text that a run judges: the places and digests of its declarations.
 
     - ``variants`` and ``executions``: the IRIs of all variants and executions in the model.
-    - ``seed``: the seed that the user gave, or ``None``. If failures are executed again, it is the seed of their run.
+    - ``seed``: the seed that the user gave, or ``None``. If failures are executed again, this is the seed of the run in
+      which they failed.
     - ``notes``: messages to show when the run starts.
     """
 

@@ -125,6 +125,6 @@ class Stores:
 
 
 def _state(database: Path) -> object:
-    """Return a value that changes whenever the database does."""
+    """Return a value that changes whenever the database changes."""
     files = (database, database.with_name(database.name + LOG))
     return tuple(file_state(path_to_uri(file)) for file in files)

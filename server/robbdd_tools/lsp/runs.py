@@ -57,7 +57,7 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
 
 
 async def estimate_run(ls: RobbddServer, argument: dict[str, Any]) -> dict[str, Any]:
-    """Return the estimated duration of a run, or the reason why there would be no run. Nothing is executed."""
+    """Return the estimated duration of a run, or the reason why it cannot be run. Nothing is executed."""
     try:
         options = RunOptions.of(argument)
         planned = await _planned(ls, options)

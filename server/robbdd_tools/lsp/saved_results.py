@@ -74,7 +74,7 @@ def _read(path: Path) -> KeptResults:
 
 
 def _write(folder: Path, text: str) -> None:
-    """Replace the file atomically; create none if nothing was run."""
+    """Replace the file atomically. If nothing was run, do not create it."""
     folder.mkdir(exist_ok=True)
     ignored = folder / ".gitignore"
     if not ignored.exists():

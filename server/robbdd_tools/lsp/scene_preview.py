@@ -1,7 +1,8 @@
 """The request ``robbdd/scene``: draw the scene instances of a ``.scenex`` while it is edited.
 
 The parameter is ``uri``. ``docs/schemas/scene.schema.json`` describes the answer. A process of its own sets up the
-scenes; it executes no users' code. While one request is drawn, only the latest other one for the same document waits.
+scenes; it executes no users' code. While one request is being drawn, only the latest further request for the same
+document waits.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def register_scene(server: RobbddServer) -> None:
 
 
 def _request(snapshot: Snapshot, uri: str) -> tuple[str | None, DrawingRequest | None, Snapshot]:
-    """Return the first error of the text or another reason why nothing can be drawn, and what to draw."""
+    """Return the reason why nothing can be drawn, such as the first error of the text, and the request to draw."""
     problem = first_problem(snapshot, uri)
     asked = None if problem is not None else drawing_request(snapshot, uri)
     return problem or (NONE if asked is None else None), asked, snapshot

@@ -96,7 +96,7 @@ class RobbddServer(LanguageServer):
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
         self.pulls = False
-        """Whether the client pulls diagnostics; otherwise they are published, never both."""
+        """Whether the client pulls diagnostics. If not, the server publishes them; it never does both."""
         self.refreshes = Refreshes(self)
         self.importers = Importers(self)
         self.survey = WorkspaceDiagnostics(self)
@@ -118,7 +118,7 @@ class RobbddServer(LanguageServer):
         return lambda handler: register(self.requests.with_logged_errors(command_name, handler))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Log an error that no request waits for. Handlers have already logged their own errors with context."""
+        """Log an error outside of requests. Handlers have already logged their own errors with context."""
         if not isinstance(error, JsonRpcException):
             _LOG.error("internal error (%s)", source, exc_info=error)
 
@@ -232,7 +232,7 @@ class RobbddServer(LanguageServer):
         return Request(next(self._orders), uri, texts, shapes, surveyed=True, importers=importers, sources=sources)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
-        """Return a request to validate a file, and the texts to which its answer will refer."""
+        """Return a request to validate a file, and the texts to which the answer will refer."""
         texts = {name: snapshot.document(name).text for name in snapshot.reachability.walk(uri)}
         shapes, sources = self.settings.shapes(uri), self.sources.texts()
         return Request(next(self._orders), uri, self.project.texts(), shapes, sources=sources), texts
@@ -248,7 +248,7 @@ class RobbddServer(LanguageServer):
         await self.show_changed()
 
     async def show_changed(self) -> None:
-        """Show the results that are waiting to be shown."""
+        """Show the pending results."""
         changed, self._changed = self._changed, {}
         self._findings = ProjectFindings(self.results, self.rejudging.executions)
         self.refreshes.want(HINTS, LENSES)
@@ -260,7 +260,7 @@ class RobbddServer(LanguageServer):
         return self._findings.of_file(snapshot, uri, project_of(uri))
 
     async def show_diagnostics(self, uris: Iterable[str]) -> None:
-        """Send the diagnostics of those of some files that are open to the client again."""
+        """Send the client the diagnostics of some files again, as far as the files are open."""
         if self.pulls:
             self.refreshes.want(DIAGNOSTICS)
             return
@@ -277,7 +277,7 @@ class RobbddServer(LanguageServer):
         return sorted(paths, key=lambda path: -len(path.parts))
 
     def warn(self, message: str, kind: types.MessageType = types.MessageType.Error) -> None:
-        """Show the user a message that says why something was not done."""
+        """Show the user why something was not done."""
         # VS Code turns [words](command:…) in messages into links; the words may be a user's. The space has no width.
         shown = printable(message).replace("](", "]\u200b(")
         self.window_show_message(types.ShowMessageParams(type=kind, message=shown))

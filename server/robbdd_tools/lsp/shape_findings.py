@@ -60,7 +60,7 @@ class ShapeFindings:
         self._requested.pop(uri, None)
 
     def valid(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-        """Return the findings in a file, without those at places where its text has changed since.
+        """Return the findings in a file, except those at places where the text has changed since the validation.
 
         Findings from the validation of all open files are included.
         """
@@ -86,7 +86,7 @@ def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
 
 
 def _moved(span: Span, start: int, end: int, grown: int) -> Span | None:
-    """Return the place of a span after an edit between ``start`` and ``end`` that made the text ``grown`` longer.
+    """Return the place of a span after an edit between ``start`` and ``end`` that made the text longer by ``grown``.
 
     Returns ``None`` if the edit touches the span.
     """

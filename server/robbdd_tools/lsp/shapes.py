@@ -16,9 +16,9 @@ from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, fra
 from robbdd_tools.lsp.requests import log_background_error
 
 PAUSE = 0.02
-"""Seconds in which successive edits, as from several cursors, are combined."""
+"""Edits within this time (s), for example from several cursors, are combined."""
 MAX_DEATHS = 2
-"""Deaths of the process over the same file after which the file is skipped until it changes."""
+"""If the process dies this many times on the same file, the file is skipped until it changes."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.worker import main; main"
 _LOG = logging.getLogger(__name__)
@@ -28,7 +28,7 @@ class ShapeValidator:
     """Validates files in a worker process.
 
     ``deliver`` is called with each answer about a file that is still requested, including errors. If ``in_passing`` is
-    true, the process has low priority. A newer request is sent immediately, and the process abandons the older one,
+    true, the process has low priority. A newer request is sent immediately. The process then abandons the older one,
     unless it has already abandoned too many. The process is started at the first request. If it dies, or hangs and is
     killed, it is restarted with its unanswered requests, except for the file that caused the failure.
     """
@@ -123,7 +123,7 @@ class ShapeValidator:
         self._deliver(message)
 
     def _work_on(self, uri: str) -> None:
-        """Record the file on which the worker is working, and start its time limit. An empty ``uri`` means no file."""
+        """Record the worker's current file, and start the time limit. An empty ``uri`` means no file."""
         self._working = uri
         if self._watch is not None:
             self._watch.cancel()

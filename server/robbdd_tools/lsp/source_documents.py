@@ -1,7 +1,7 @@
 """Follow the unsaved texts of files that models use: Python code, steps, and descriptions of robots (MJCF, URDF).
 
-A client that can register for documents dynamically is asked for exactly the files that a model of the workspace names,
-so that no other file of the user is sent. Any client may open such a file at the server.
+If a client supports dynamic registration, the server registers for exactly those files that a model of the workspace
+names, so that the client sends no other file of the user. Any client may open such a file at the server.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 SUFFIXES = (".py", ".xml", ".mjcf", ".urdf", ".srdf", ".xacro")
-"""Endings of such files."""
+"""Endings of files that models may use."""
 _METHODS = (types.TEXT_DOCUMENT_DID_OPEN, types.TEXT_DOCUMENT_DID_CHANGE, types.TEXT_DOCUMENT_DID_CLOSE)
 _GLOB = re.compile(r"[\[\]{}*?]")
 
 
 def is_source(uri: str) -> bool:
-    """Return whether a document is such a file, by its ending."""
+    """Return whether a document's ending is that of a file that models may use."""
     return PurePosixPath(uri).suffix.lower() in SUFFIXES
 
 
 class SourceDocuments:
-    """The unsaved texts of such files, and the models that name them."""
+    """The unsaved texts of files that models use, and the models that name these files."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -55,7 +55,7 @@ class SourceDocuments:
         return {path: text for uri, text in self._texts.items() if (path := uri_to_path(uri)) is not None}
 
     async def edited(self, uri: str, text: str) -> None:
-        """Use the text of a document in an editor instead of the file's."""
+        """Use the text of an open document instead of the file on disk."""
         self._texts[_usual(uri)] = text
         await self._use(uri)
 
@@ -86,7 +86,7 @@ class SourceDocuments:
             self._server.spawn(self._subscribe())
 
     def follow_soon(self, model: str) -> None:
-        """Find the files that an edited model names, when nothing else is to be done."""
+        """Schedule the search for the files that an edited model names. It runs when the server is idle."""
         if language_of(model) in NAMING and not (language_of(model) == "bdd" and model in self._named):
             self._server.spawn(self._follow([model]))
 
@@ -98,7 +98,7 @@ class SourceDocuments:
         self.learn(await self._server.analyse(find, Urgency.LATER))
 
     def learn(self, named: Mapping[str, frozenset[str]]) -> None:
-        """Take note of the files that models name, and subscribe to their texts."""
+        """Record the files that models name, and subscribe to their texts."""
         if any(self._named.get(model, frozenset()) != files for model, files in named.items()):
             before = frozenset(uri for files in self._named.values() for uri in files)
             self._named |= named
@@ -109,7 +109,7 @@ class SourceDocuments:
                 self._server.spawn(self.changed(late))
 
     async def _subscribe(self) -> None:
-        """Ask the client for the texts of the named files that exist, and no longer for those of others."""
+        """Subscribe to the texts of exactly those named files that exist."""
         document = self._server.client_capabilities.text_document
         able = document.synchronization if document is not None else None
         if able is None or not able.dynamic_registration:
@@ -131,7 +131,7 @@ class SourceDocuments:
 
 
 def _with_imports(snapshot: Snapshot, models: Iterable[str]) -> list[str]:
-    """Return files and those that they import."""
+    """Return some files and the files that they import."""
     return list(dict.fromkeys(other for model in models for other in snapshot.reachability.walk(model)))
 
 

@@ -13,8 +13,8 @@ from robbdd_tools.lsp.transport import bounded
 class StdioConnection:
     """Standard input and output.
 
-    The client may keep its end open after ``exit``, while a thread reads from it. Where a read cannot be interrupted,
-    ``close`` has no effect, and ``end_soon`` ends the process.
+    The client may keep its end open after ``exit``, while a thread reads from it. On systems where a read cannot be
+    interrupted, ``close`` has no effect, and ``end_soon`` ends the process.
     """
 
     def __init__(self) -> None:

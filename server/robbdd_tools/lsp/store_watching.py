@@ -1,4 +1,4 @@
-"""Watch stores of runs outside of the workspace folders, such as that of a project whose subfolder is open."""
+"""Watch stores of runs outside of the workspace folders, for example if only a subfolder of a project is open."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class StoreWatching:
         self._watched: set[Path] = set()
 
     async def watch(self, stores: Iterable[RunStore]) -> None:
-        """Watch stores. Those inside of a workspace folder are watched with all files of that folder."""
+        """Watch stores. A store inside of a workspace folder is already watched with the folder."""
         folders = self._server.folders()
         found = {store.folder for store in stores}
         outside = {store for store in found if not any(store.is_relative_to(folder) for folder in folders)}

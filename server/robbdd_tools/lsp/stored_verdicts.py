@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 PAUSE = 2.0
-"""Seconds after which a store is read again while a run in it is in progress."""
+"""While a run is in progress, its store is read again after this many seconds."""
 
 
 class StoredVerdicts:
@@ -99,7 +99,7 @@ class StoredVerdicts:
                 await self.save()
 
     def _read_again(self, store: RunStore) -> None:
-        """Read a store after a pause. The last report about a run may arrive before the run has ended."""
+        """Read a store again after a pause, because the last report about a run may arrive before the run has ended."""
         if store.folder not in self._in_use:
             self._in_use.add(store.folder)
             self._server.spawn(self._refresh_later(store))

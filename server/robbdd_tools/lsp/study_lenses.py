@@ -1,4 +1,4 @@
-"""Code lenses of a study. The client executes them by the command line, since a study may take hours."""
+"""Code lenses of a study. The client executes them on the command line, because a study may take hours."""
 
 from __future__ import annotations
 

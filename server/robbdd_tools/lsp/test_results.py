@@ -166,5 +166,5 @@ def _imported_scenario(
 
 
 def _because(clause: str | None, position: int | None, words: str) -> dict[str, Any] | None:
-    """Return the clause that another clause is unknown because of; ``None`` if ``words`` name none."""
+    """Return the clause that makes another one unknown; ``None`` if ``words`` name no clause."""
     return {"clause": clause, "position": position, "words": words} if words else None

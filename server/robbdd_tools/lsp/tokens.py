@@ -94,7 +94,7 @@ _NUMBERS = {
 class SentTokens:
     """The tokens that the client has of each document. They are stored so that only changes must be sent.
 
-    They are arrays of C integers, because those of a long file are joined and compared after each keystroke.
+    They are arrays of C integers, because the tokens of a long file are joined and compared after each keystroke.
     """
 
     _count: int = 0

@@ -124,8 +124,8 @@ def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
 async def end_after_loop(code: Callable[[], int]) -> None:
     """Make sure that the process ends soon after the event loop, whether by ``exit``, Ctrl-C or the client's end.
 
-    The loop waits for its tasks, and one that is starting a process may never end (CPython 3.11). ``code`` returns the
-    exit code.
+    The loop waits for its tasks, but a task that is starting a process may never end (CPython 3.11). ``code`` returns
+    the exit code.
     """
     try:
         await asyncio.Event().wait()

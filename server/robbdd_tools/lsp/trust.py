@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _REFUSAL = "nothing was run, because this workspace is not trusted"
 _WITHOUT_PLACES = f"{_REFUSAL}: scenarios run the workspace's own steps, behaviours and models"
 _SEARCHED = 100
-"""Maximum scenarios searched for code: those of one execution share theirs, and a refusal must be quick."""
+"""Maximum scenarios searched for code: scenarios of one execution share their code, and a refusal must be quick."""
 
 
 def forbid_user_code() -> None:

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 CODE_EDITED = "robbdd/codeEdited"
 """Notification of a client: the user edits the Python file ``uri`` and has not saved it yet."""
 END_OF_LINE = 10_000
-"""A character beyond any line's end; clients clamp it to the end."""
+"""A column beyond the end of any line. Clients move it to the end of the line."""
 
 
 class UserErrors:
-    """The errors in files that are not open as models. These are Python files, and models that a run has used."""
+    """The errors in files that are not open as models. The files are Python files, and models that a run has used."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -56,7 +56,7 @@ class UserErrors:
     async def code_changed(self) -> None:
         """Show the errors again after code has changed.
 
-        Only errors in code that is unchanged since its execution remain.
+        Only errors in code that has not changed since its execution remain.
         """
         if any(scenario.faults for scenario in self._server.results):
             await self.refresh()

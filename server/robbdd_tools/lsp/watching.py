@@ -27,12 +27,12 @@ WATCHED = (
 SOURCES = f"**/*{{{','.join(SUFFIXES)}}}"
 """Files that models may name. The errors of code from a run are outdated when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
-"""Results file of a stored run, also of one from the command line."""
+"""Results file of a stored run, including runs of the command line."""
 DATABASE = f"**/{FOLDER.parent}/{NAME}"
 """Results of all runs of a store, which change at the end of every run. Clients may miss the files in folders that were
 just made, such as those of the first run."""
 STUDIES = f"**/{FOLDER.parent}/{{studies,studies/*,studies/**/{STUDY}}}"
-"""Results of a study, whose lenses depend on whether there are any, and the folders that are made for the first one."""
+"""Results of a study, because its lenses depend on them, and the folders that are made for the first result."""
 STORES = f"**/{{{FOLDER.parent},{FOLDER.as_posix()}}}"
 """The folders of a store. Clients report a deleted folder without the files in it."""
 

@@ -17,14 +17,14 @@ class WorkDone:
     def __init__(self, server: RobbddServer, token: str) -> None:
         self._progress = server.work_done_progress
         self._untyped: Any = self._progress
-        """The same, where pygls leaves an answer or a value untyped."""
+        """``_progress`` without a type, for calls in which pygls leaves an answer or a value untyped."""
         self._token = token
         window = server.client_capabilities.window
         self._is_supported = bool(window is not None and window.work_done_progress)
         self._is_shown = False
 
     async def begin(self, title: str, *, cancellable: bool = False) -> None:
-        """Ask the client to show the progress, unless it shows it already or has refused."""
+        """Ask the client to show the progress, unless it already does or has refused to."""
         if not self._is_supported or self._is_shown:
             return
         try:

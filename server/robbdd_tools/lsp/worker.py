@@ -34,11 +34,11 @@ class AboutFile(Protocol):
 
 Message = TypeVar("Message", bound=AboutFile)
 MAX_LEFT = 8
-"""Validations of a file in a row that may be abandoned for a newer one; then one finishes even during typing."""
+"""After this many validations of a file in a row were abandoned for newer ones, one finishes even during typing."""
 
 
 class Inbox(Generic[Message]):
-    """The latest message about each file, in the order of the first messages about them.
+    """The latest message about each file, in the order in which the files were first mentioned.
 
     A thread reads the input while a message is worked on, so that the work can detect that it is outdated.
     """

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 PAUSE = 1.0
-"""Seconds without changes until files are validated."""
+"""Files are validated after this many seconds without a change."""
 GATHERING = 0.25
-"""Seconds in which findings are gathered before they are published."""
+"""Findings are gathered for this many seconds, then published."""
 AT_ONCE = 2
-"""Files requested ahead, so that the process never idles."""
+"""This many files are requested ahead, so that the process is never idle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class WorkspaceDiagnostics:
         await self._news.wait()
 
     def findings(self) -> dict[str, Findings]:
-        """Return the findings in each unopened file, merged from the validation of all files that import it."""
+        """Return the findings in each unopened file, merged from the validations of the files that import it."""
         parts: dict[str, list[Findings]] = {}
         for owner in sorted(self._found):
             if self._server.is_open(owner):
