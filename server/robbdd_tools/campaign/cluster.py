@@ -160,7 +160,7 @@ class Cluster:
             case "finished":
                 try:
                     result: PartResult = flight.future.result(timeout=CONNECTING)
-                except Exception:  # its worker died with the result, or the scheduler did: Dask's own types
+                except Exception:  # Dask's own types: the worker or the scheduler died with the result
                     return None
                 self._flights.remove(flight)
                 self._release(flight)

@@ -110,7 +110,7 @@ def markdown(title: str, found: RunComparison, notes: Sequence[str]) -> str:
 
 
 def deciding_clauses(change: ExecutionChange) -> Sequence[ClauseChange]:
-    """Return the clauses that explain why an execution flipped: what is unknown now follows from what is violated."""
+    """Return the clauses that explain a flip: those that are violated now or, if there are none, all that changed."""
     return [clause for clause in change.clauses if clause.after is Outcome.VIOLATED] or change.clauses
 
 
@@ -159,5 +159,5 @@ def _number(value: float) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape what Markdown would interpret in a cell."""
+    """Escape characters that Markdown would interpret in a cell."""
     return "".join(f"\\{letter}" if letter in "\\|*_`[]<>#" else letter for letter in text)

@@ -3,7 +3,7 @@
 A bundle is a ZIP archive:
 
 - ``bundle.json``: the SHA-256 of every other file, the versions, and the name of the model file.
-- ``sources/``: the texts of the models and of what they import, and the files that the run used.
+- ``sources/``: the texts of the models and of their imports, and the files that the run used.
 - ``run/``: the record, the manifest, the results and the traces of the run.
 - ``graph.ttl``: requirements, scenarios, clauses, executions, verdicts (EARL) and traces (PROV) as one graph.
 

@@ -33,7 +33,8 @@ class Judged:
 class MatchedClause:
     """A clause with its verdicts in both runs. Position *i* of ``before`` and of ``after`` is the same scenario.
 
-    The row of all clauses together has an empty ``iri`` and the ``role`` ``scenario``. ``unit`` is that of the margins.
+    The row of all clauses together has an empty ``iri`` and the ``role`` ``scenario``. ``unit`` is the unit of the
+    margins.
     """
 
     iri: str

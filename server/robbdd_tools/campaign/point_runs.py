@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.run.run_policy import Policy
 
 NO_MARGIN = 1.0
-"""Robustness of an execution in which no margin decides: it counts as being as far from failing as nominal."""
+"""Robustness of an execution without a deciding margin: it counts as being as far from failing as nominal."""
 
 
 class SearchEnded(RobbddError):

@@ -71,7 +71,7 @@ def repeated(results: Sequence[ExecutionResult]) -> bool:
 
 
 def matrix_data(results: Sequence[ExecutionResult]) -> Mapping[str, Any]:
-    """Return scenarios × clauses for the page: names, and of each execution its scenario and a letter per clause."""
+    """Return scenarios × clauses for the page: their names and, per execution, its scenario and a letter per clause."""
     scenarios: dict[str, int] = {}
     clauses: dict[str, tuple[int, str]] = {}
     varied = _varied(results)

@@ -54,7 +54,7 @@ class Moments:
         self._replays: list[str] = []
 
     def add(self, run: StoredRun, results: Iterable[ExecutionResult], label: str = "") -> Mapping[int, Moment]:
-        """Return the moments of those executions of a run that have a trace and a violated clause, by their index.
+        """Return the moment of each execution that has a trace and a violated clause, by the index of the execution.
 
         ``label`` says which run it is. Raises ``NoSuchRun``.
         """

@@ -66,11 +66,11 @@ def draw_margins(found: Margins, path: Path) -> None:
 def _libraries() -> tuple[Any, Any]:
     try:
         matplotlib: Any = import_module("matplotlib")
-        # Not the user's settings, and no backend of a file in the working directory: equal results give equal files.
+        # Ignore users' settings and a matplotlibrc in the working directory, so that equal results give equal files.
         matplotlib.rcdefaults()
         matplotlib.use("Agg")
         matplotlib.rcParams["svg.hashsalt"] = "robbdd"
-        # Text stays text, so that it can be searched and read aloud.
+        # Keep text as text, so that it can be searched and read aloud.
         matplotlib.rcParams["svg.fonttype"] = "none"
         return import_module("matplotlib.pyplot"), import_module("seaborn")
     except ImportError as error:

@@ -188,7 +188,7 @@ class StudyRun:
                 self.tally.add(run.progress.scenarios[message.index])
                 yield
         self._run = None
-        # A batch that is complete in spite of a request to end is stored first.
+        # If a batch is complete in spite of a request to end, it is stored first.
         self.ending = run.problem or ("" if run.progress.complete else self._reason or self._draining or run.ending)
 
     def _store(self, batch: Batch, place: StoredRun) -> None:

@@ -106,7 +106,7 @@ class Display:
             transient=True,
             disable=not self._drawn,
         )
-        # A resumed run has some already.
+        # A resumed run already has finished scenarios.
         finished = [scenario for scenario in results.scenarios if scenario.finished is not None]
         self._ended = Counter(scenario.verdict for scenario in finished)
         self._shown = Counter(self._ended)

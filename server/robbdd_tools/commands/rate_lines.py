@@ -19,7 +19,7 @@ MAX_LEVELS = 10
 
 
 def rate_lines(scenarios: Sequence[ScenarioResult]) -> list[str]:
-    """Return the pass rate of all scenarios, then those of each factor with several levels.
+    """Return the pass rate of all scenarios, then the pass rates of each factor with several levels.
 
     If a factor has more than ``MAX_LEVELS`` levels, only those with the lowest rates are listed.
     """

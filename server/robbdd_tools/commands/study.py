@@ -87,7 +87,7 @@ def export_rows(path: Path, output: Path, store: Path | None) -> int:
 
 
 def clean_study(path: Path, store: Path | None, *, failures_stay: bool, everything: bool) -> int:
-    """Remove what a study keeps besides its results, or with ``everything`` the results as well."""
+    """Remove everything that a study keeps except its results; with ``everything``, remove the results, too."""
 
     def work() -> int:
         found = clean(study_folder(path, store), failures_stay=failures_stay, everything=everything)

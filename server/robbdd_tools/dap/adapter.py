@@ -241,7 +241,7 @@ class DebugAdapter:
         if paused.hits:
             body |= {"description": f"{text} at {paused.time:.3f} s", "text": text}
             self._output(f"{paused.time:.3f} s: {text}")
-        # The reason "exception", which filters usually have, would announce an error of code: no clause is one.
+        # Filters usually have the reason "exception", but it would announce an error in code.
         self._event("stopped", **body, hitBreakpointIds=self._breakpoints.hit(spec, paused.hits))
 
     def _launched(self) -> DebuggedScenario:

@@ -34,6 +34,6 @@ def _frame(number: int, name: str, place: Place | None, first_line: int) -> dict
     if place is None or place.path is None:
         return {"id": number, "name": name, "line": 0, "column": 0, "presentationHint": "subtle"}
     source = {"name": place.path.name, "path": str(place.path)}
-    # Without an end: VS Code would scroll to the end of a long line, and its beginning out of sight.
+    # State no end, or VS Code would scroll to the end of a long line and hide its beginning.
     start = {"line": place.line - first_line, "column": place.column - first_line}
     return {"id": number, "name": name, "source": source, **start}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 OLD = 1_000_000_000
-"""If a topic's first message has an executing goal that is at least this old (ns), the goal began before the log."""
+"""A goal began before the log if a topic's first message shows it as active and accepted more than this (ns) ago."""
 
 
 class GoalState(Enum):

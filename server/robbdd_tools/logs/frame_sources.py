@@ -32,7 +32,7 @@ class FrameSources:
         """Return the builder of a topic of transforms. Static and moving ones of a namespace share a builder."""
         found = self._transforms.get(topic)
         if found is None:
-            # Static transforms are few; the others take this way once.
+            # Static transforms are few; other topics take this branch only once.
             found = self._transforms.setdefault(_group(topic), TrackBuilder())
         return found
 

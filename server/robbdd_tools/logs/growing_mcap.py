@@ -1,4 +1,4 @@
-"""Read an MCAP file that is still recorded, or whose recording was interrupted, as far as it is complete."""
+"""Read the complete part of an MCAP file that is still being recorded, or whose recording was interrupted."""
 
 from __future__ import annotations
 

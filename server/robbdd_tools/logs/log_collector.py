@@ -41,7 +41,7 @@ class LogCollector:
         """Add a transform. ``time`` has the time of its header and the time of its reception."""
         stamp, received = time
         name = frame.lstrip("/")
-        # Static transforms hold at all times: they are published once, with the time of a start long ago.
+        # Static transforms hold at all times: they are published once, and may have the time of a start long ago.
         messages = self._stamped if static else self._messages(topic, name, time)
         _add(messages.frames.of_transforms(topic), name, parent, stamp or received, pose, static=static)
 
@@ -108,7 +108,7 @@ class LogCollector:
 
 
 class _Messages:
-    """Messages whose times are those of one clock."""
+    """Messages whose times are from one clock."""
 
     def __init__(self) -> None:
         self.frames = FrameSources()

@@ -78,7 +78,7 @@ def _parsed(path: Path, record: bytes) -> Iterator[object]:
     try:
         yield from StreamReader(BytesIO(record), skip_magic=True, validate_crcs=True).records
     except EndOfFile:
-        # The reader asks for a next record, or for the magic behind the footer.
+        # The reader expects a further record, or the magic after the footer.
         return
     except Exception as error:  # Damaged bytes raise exceptions of the decompressors, too.
         raise UnreadableLog(f"{path} is damaged: {error or type(error).__name__}") from error

@@ -42,7 +42,7 @@ class LastValid:
 
 
 def first_problem(snapshot: Snapshot, uri: str) -> str | None:
-    """Return the first error of a document or of a file that it imports, with its place; ``None`` without one."""
+    """Return the first error of a document or of a file that it imports, with its place; ``None`` if there is none."""
     error = _first_error(snapshot, uri)
     return None if error is None else _described(snapshot, uri, error)
 

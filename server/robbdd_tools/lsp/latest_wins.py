@@ -1,4 +1,4 @@
-"""Run tasks of which only the latest matters. A running task is replaced at most ``MAX_REPLACED`` times in a row."""
+"""Run tasks if only the latest one matters. A running task is replaced at most ``MAX_REPLACED`` times in a row."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ class Protocol(LanguageServerProtocol):
         message = with_canonical_uris(data)
         uri = _document(message)
         if method == types.TEXT_DOCUMENT_DID_OPEN and uri is not None:
-            # Requests may already be waiting behind this message.
+            # Requests may already be queued after this message.
             spellings.open(uri)
         return message
 

@@ -1,4 +1,4 @@
-"""Code lenses of requirements: their coverage and last verdicts, and the scenarios that verify them, to run."""
+"""Code lenses of requirements: their coverage, their last verdicts, and a command to run their scenarios."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ class SourceDocuments:
                 await self._server.publish(model)
             if self._server.pulls:
                 await self._server.show_diagnostics(concerned)
-            # A file may include others since, or exist only now.
+            # Since then, a file may include other files, or may have been created.
             await self._follow(models)
             self._server.spawn(self._subscribe())
 

@@ -54,7 +54,7 @@ class Owner:
         return "" if self._folder is None else self._folder.remark
 
     def open(self, model: Path) -> StoredRun:
-        """Return the run folder. The store is that of the project that contains ``model``. Raises ``OSError``."""
+        """Return the run folder. The default store is that of the project with ``model``. Raises ``OSError``."""
         if self._folder is None:
             self._folder = new_folder(model, self._keeping)
         return self._folder.place

@@ -60,7 +60,7 @@ def emitters_of(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
         for clause in clauses:
             if isinstance(clause, EventClause):
                 bound.setdefault(clause.event, EXTERNAL)
-    # Of an event that is defined and emitted, too, only the definition counts (diagnostic ``defined-event``).
+    # If an event is both defined and emitted, only the definition counts (diagnostic ``defined-event``).
     return bound | {event.iri: DEFINED for event in template.events}
 
 

@@ -58,7 +58,7 @@ def pack_used(manifest: Manifest, folder: Path, more: Iterable[Path] = ()) -> Pa
         folders.add(path if path.is_dir() else path.parent)
     folders.update(path.parent for path in _named(json.loads(load_text(folder / MANIFEST, RESULT_SIZE))))
     roots = tuple(str(one) for one in sorted(folders) if one.parent != one and not folders & {*one.parents})
-    # The files are named without links; the manifest names them as the user did.
+    # ``files`` have links resolved, but the manifest may name the same files through links.
     linked = {link / path.relative_to(link.resolve()): path for link in folders for path in _below(link, files)}
     every = sorted({**{path: path for path in files}, **linked}.items())
     named = [(name.relative_to(name.anchor).as_posix(), path) for name, path in every]
@@ -116,7 +116,7 @@ class Moved:
         if not self.roots:
             return text
         spellings = {spelling for root in self.roots for spelling in (_in_json(root), quote(root))}
-        # A path begins a string, follows a blank in a command, or the two slashes of a URI.
+        # A path is at the start of a string, after a blank in a command, or after the two slashes of a URI.
         begins, ends = r"(?:(?<=[\"'\s=])|(?<=//))", r"(?=[/\"'\s:;,]|$)"
         either = "|".join(re.escape(one) for one in sorted(spellings, key=len, reverse=True))
         root = _in_json(str(self.root))

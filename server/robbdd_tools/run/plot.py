@@ -74,7 +74,7 @@ def _axes(frame: _Frame, part: Mapping[str, Any], bounds: tuple[float, float]) -
     yield f'<line x1="{LEFT}" y1="{zero}" x2="{WIDTH - RIGHT}" y2="{zero}" stroke="{INK}" stroke-dasharray="4 3"/>'
     yield f'<text x="{LEFT - 6}" y="{zero + 3}" text-anchor="end">0</text>'
     for value in bounds:
-        # Leave out a number that would overlap that of the zero line.
+        # Leave out a number that would overlap the zero line's number.
         if abs(frame.y(value) - zero) > 11:
             words = margin(value, part["unit"]) or f"{value:+.0f}".replace("-", MINUS)
             yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words, quote=False)}</text>'

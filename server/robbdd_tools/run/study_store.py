@@ -44,7 +44,7 @@ class StudyStore(StudyReader):
             connection.executemany("INSERT OR REPLACE INTO fact (name, content) VALUES (?, ?)", facts.items())
 
     def add(self, batch: int, cell: str, levels: Mapping[str, str], results: RunResults) -> None:
-        """Store the executions of a batch. ``levels`` are those of the study's factors."""
+        """Store the executions of a batch. ``levels`` maps the study's factors to their levels."""
         with self._writing() as connection:
             self._words.clear()
             row = (batch, cell, self._word(connection, platform.node()))

@@ -133,7 +133,7 @@ def compare(before: StoredRun, after: StoredRun) -> Comparison:
 def changes_between(
     before: Mapping[str, Executed], after: Mapping[str, Executed]
 ) -> tuple[tuple[ExecutionChange, ...], int]:
-    """Return the executions that differ, those that flipped first, and the number of the others.
+    """Return the executions that differ, flipped ones first, and the number of executions that do not differ.
 
     Executions with the same key are compared.
     """

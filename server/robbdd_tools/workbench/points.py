@@ -123,7 +123,7 @@ def _rows(
 def block_seeds(seed: int) -> Callable[[ScenarioSpec], ScenarioSpec]:
     """Return a function that gives an execution a seed that depends only on its repetition.
 
-    A seed of the scene (``has config seed``) and that of a behaviour tree's execution stay as they are.
+    Seeds of scenes (``has config seed``) and of executions of behaviour trees do not change.
     """
 
     def seeded(spec: ScenarioSpec) -> ScenarioSpec:

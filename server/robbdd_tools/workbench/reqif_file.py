@@ -47,7 +47,7 @@ def read_reqif(file: Path, text: str) -> list[RequirementRow]:
         line, column, kind = (place[1], place[2], "XML") if place is not None else ("1", "1", "ReqIF")
         reason = _PLACE.sub("", str(error)).partition(" (")[0].strip(" ,.")
         raise TableProblem(f"{file}:{line}:{column}: this is no {kind}: {reason}") from None
-    except Exception as error:  # The package states by exceptions of any type what it does not understand.
+    except Exception as error:  # The package raises any type of exception for what it cannot read.
         raise TableProblem(_unusable(file, error)) from None
     objects = list(_objects(bundle))
     if not objects:

@@ -236,7 +236,7 @@ def _cells(text: str, sign: str) -> Iterator[list[Cell]]:
             start = match.start() + match[0].rindex("\n") + 1
         offset = match.end()
         if quoted and offset < len(text) and text[offset] not in (sign, "\n"):
-            # Text behind the closing quote belongs to the cell.
+            # Text after the closing quote belongs to the cell.
             rest = re.compile(rf"[^{sign}\n]*").match(text, offset)
             assert rest is not None
             row[-1] = (value + rest[0], *row[-1][1:])

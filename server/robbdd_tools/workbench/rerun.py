@@ -25,7 +25,7 @@ class NothingFailed(RobbddError):
 class Failed:
     """The executions that did not hold, and the options with which to execute them again.
 
-    - ``seed``: the seed that the user gave; ``None`` without one.
+    - ``seed``: the seed that the user gave; ``None`` if the user gave none.
     - ``repeat``: the number of repetitions; ``None`` for the number that the model states.
     - ``default_seed``: the seed of scenarios that have no seed of their own.
     - ``substitutions``: the substitutions of the run.

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FIND = "robbdd_tools.agent.find_faults"
 KNOWN = {FaultKind.MODEL: {"model-file", "model-name", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
-"""Kind of fault → codes of the rules that report it at a better place. After such a finding, it is not repeated."""
+"""Kind of fault → codes of the rules that report it at a better place. Such faults are not reported again."""
 _TOKEN = re.compile(r"<[^>\n]*>|[\w.-]+|.")
 
 
