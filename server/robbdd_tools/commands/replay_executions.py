@@ -33,8 +33,8 @@ class ReplayOptions:
 def replay_study(options: ReplayOptions) -> int:
     """Execute the chosen executions again, and print their verdicts.
 
-    Returns 0 if the verdicts equal those of the study, 1 if not, 2 if the executions failed. Raises ``RobbddError`` and
-    ``OSError``.
+    Returns 0 if the verdicts equal those of the study, 1 if not, 2 if the executions could not be made. Raises
+    ``RobbddError`` and ``OSError``.
     """
     study = load_study(options.path)
     print_findings((one for one in study.findings if one.is_error), print_note)

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 def stack_frames(
     scenario: DebuggedScenario, spec: ScenarioSpec, paused: Paused, first_line: int
 ) -> list[dict[str, Any]]:
-    """Return the frames; the id of a clause's frame is 0. Lines count from 1, less ``first_line``."""
+    """Return the frames; the id of a clause's frame is 0.
+
+    ``first_line`` is the number to subtract from lines, which count from 1.
+    """
     frames: list[dict[str, Any]] = []
     clause = next((one for one in spec.clauses if one.line == paused.line), None)
     if clause is not None:

@@ -133,7 +133,7 @@ def _changed_files(known: Mapping[str, str], folder: Path, drafts: Mapping[str, 
 
 
 def _refusal(clause: ClauseSpec, spec: ScenarioSpec, file: ModelFile) -> str:
-    """Return why an edited clause is not judged while editing, namely if users' code judges it; else empty."""
+    """Return why an edited clause is not judged while editing; empty unless users' code would judge it."""
     path = uri_to_path(file.uri)
     if path is not None and may_define(path, clause.sentence):
         return f"a step of the project judges it: {AGAIN}"

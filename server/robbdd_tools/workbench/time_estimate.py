@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
 
 LARGE = 60.0
-"""Seconds from which a run is announced with its estimated duration."""
+"""A run that is expected to take at least this many seconds is announced with its estimated duration."""
 
 
 @dataclass(frozen=True, slots=True)
