@@ -52,7 +52,7 @@ class FalsifyOptions:
 
 
 def falsify(options: FalsifyOptions) -> int:
-    """Search and print the failure. Returns 0 if none was found, 1 if one was found, 2 if the search failed."""
+    """Search and print the failure. Returns 0 if none was found, 1 if one was found, 2 if the search is impossible."""
     try:
         study = load_study(options.path)
         errors = [one for one in study.findings if one.is_error]
