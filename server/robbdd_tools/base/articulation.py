@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 Three = tuple[float, float, float]
 Four = tuple[float, float, float, float]
 CLOSED_SHARE, OPEN_SHARE = 0.02, 0.9
-"""Shares of its travel up to which a thing is closed, and from which it is open, unless the scene states others.
+"""A thing is closed up to the first share of its travel and open from the second one, unless the scene states others.
 
-A closed drawer or door lies against its stop, whose contact yields a little. Open means that it gives access, which it
-does before its last stop; a door that a spring or a gripper leaves half open does not.
+A closed drawer or door lies against its stop, whose contact yields a little. An open one gives access, even before its
+last stop. A door that a spring or a gripper leaves half open does not count as open.
 """
 
 
@@ -28,8 +28,8 @@ class PassiveJoint:
 
     - ``kind``: ``slide`` (m, N) or ``hinge`` (rad, N m).
     - ``axis``, ``anchor`` (m): in the frame of the part.
-    - ``position`` (m), ``rotation`` (unit quaternion, w first): the frame of the part in that of the parent, as the
-      file shows it. The joint position is ``zero`` there.
+    - ``position`` (m), ``rotation`` (unit quaternion, w first): the pose of the part's frame in the parent's frame, as
+      in the file. In this pose, the joint position is ``zero``.
     - ``bounds``: the range of the joint; ``None`` if it is not limited.
     - ``start``: the joint position at the beginning.
     - ``friction``, ``damping``, ``stiffness``, ``rest`` (of the spring), ``armature``: as in the file.
@@ -55,7 +55,7 @@ class PassiveJoint:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """How a thing opens: by the joint of the element ``part``, with positions in m or rad.
+    """How a thing opens: the joint of its element ``part`` moves. All positions are in m or rad.
 
     ``ends`` are the fully closed and the fully open position. The thing is closed up to the position ``closed``, and
     open from the position ``open`` on.
@@ -70,7 +70,7 @@ class Opening:
 
 @dataclass(frozen=True, eq=False)
 class OpeningRecord:
-    """How far a thing was open: the joint positions (n,) in m or rad, and those of ``Opening``."""
+    """How far a thing was open: joint positions (n,) in m or rad. ``closed`` and ``open`` are as in ``Opening``."""
 
     kind: str
     closed: float
@@ -83,11 +83,11 @@ class OpeningRecord:
         return "m" if self.kind == "slide" else "deg"
 
     def beyond_open(self) -> FloatArray:
-        """Return how far beyond the position ``open`` it is, in ``unit``, negative before it, shape (n,)."""
+        """Return the distance (n,) past the position ``open``, in ``unit``. It is negative before this position."""
         return self._in_unit(self.positions - self.open)
 
     def short_of_closed(self) -> FloatArray:
-        """Return the room left up to the position ``closed``, in ``unit``, negative beyond it, shape (n,)."""
+        """Return the margin (n,) by which the thing is closed, in ``unit``: negative past the position ``closed``."""
         return self._in_unit(self.closed - self.positions)
 
     def _in_unit(self, difference: FloatArray) -> FloatArray:

@@ -75,7 +75,7 @@ def defer_script(compile_script: _Maker) -> _Maker:
 
 
 class _Script(dict[str, Any]):
-    """The deferred methods of a class by their names. Everything else in the text needs it to be compiled."""
+    """The deferred methods of a class by name. Access to any other name compiles the text."""
 
     def __init__(self, compile_script: Callable[[], dict[str, Any]]) -> None:
         super().__init__()
@@ -93,7 +93,7 @@ class _Script(dict[str, Any]):
 
 
 def _deferred(name: str, compile_method: Callable[[], FunctionType], module: str = "builtins") -> FunctionType:
-    """Return a method that compiles another one at its first call, and leaves its place in the class to it."""
+    """Return a stand-in for a method. At its first call, it compiles the method and puts it into the class."""
     compiled: list[FunctionType] = []
 
     def method(self: Any, /, *arguments: Any, **keywords: Any) -> Any:
@@ -111,7 +111,7 @@ def _deferred(name: str, compile_method: Callable[[], FunctionType], module: str
 
 
 def _with_attributes_of(method: FunctionType, compiled: FunctionType) -> FunctionType:
-    """Return a compiled method with what a library has written to the one in its place."""
+    """Copy to a compiled method the attributes that a library has set on its stand-in."""
     compiled.__qualname__, compiled.__module__, compiled.__doc__ = (
         method.__qualname__,
         method.__module__,

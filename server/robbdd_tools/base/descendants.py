@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 MARK = "ROBBDD_AGENT"
-"""Environment variable with a different value for each agent."""
+"""Name of an environment variable. Each agent sets it to a different value."""
 PROCESSES = Path("/proc")
 _SET_CHILD_SUBREAPER = 36
 """``PR_SET_CHILD_SUBREAPER`` of ``linux/prctl.h``."""

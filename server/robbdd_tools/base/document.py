@@ -38,7 +38,7 @@ class Position:
 
 @dataclass(frozen=True)
 class Document:
-    """One revision of one text. ``uri`` is a ``file:`` URI or an editor's own (``untitled:``)."""
+    """One revision of one text. ``uri`` is a ``file:`` URI, or one that an editor assigns (``untitled:``)."""
 
     uri: str
     version: int

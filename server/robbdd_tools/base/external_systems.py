@@ -6,11 +6,11 @@ import shlex
 from urllib.parse import urlsplit
 
 ENDPOINT_HOSTS = "ROBBDD_ENDPOINT_HOSTS"
-"""Environment variable: the hosts whose endpoints the command line allows, separated by commas."""
+"""Name of an environment variable. It lists the hosts whose endpoints the command line allows, with commas between."""
 
 
 def command_words(command: str) -> list[str]:
-    """Return the program and the arguments of a command line, in POSIX quoting; empty if a quote is not closed."""
+    """Return the program and the arguments of a command line, in POSIX quoting; empty if a quote is unclosed."""
     try:
         return shlex.split(command)
     except ValueError:
@@ -18,7 +18,7 @@ def command_words(command: str) -> list[str]:
 
 
 def endpoint_host(address: str) -> str:
-    """Return the host of ``ws://HOST:PORT/PATH`` or ``wss://…``; empty if it is no such address."""
+    """Return the host of an address ``ws://HOST:PORT/PATH`` or ``wss://…``; empty for any other text."""
     try:
         found = urlsplit(address)
         # An invalid port raises an error only when it is read.

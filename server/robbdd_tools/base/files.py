@@ -1,7 +1,7 @@
 """Read regular files, up to a size limit. All other modules read through these functions.
 
-Each file is checked before it is opened and again afterwards, and is opened without blocking: a named pipe, a device or
-a link to one gives a reason instead of blocking the process or filling its memory.
+Each file is checked before it is opened and again afterwards, and is opened without blocking. So a named pipe, a device
+or a link to one can neither block the process nor fill its memory: its reader gets the reason of the refusal.
 """
 
 from __future__ import annotations

@@ -24,10 +24,10 @@ from robbdd_tools.base.processes import Ending, own_group
 
 PACKAGE_ROOT = Path(__file__).resolve().parents[2]
 STARTED_IN = "ROBBDD_STARTED_IN"
-"""Environment variable: the working directory of the process that started this one."""
+"""Name of an environment variable. Its value is the working directory of the process that started this one."""
 _DROPPED = (SEARCHED, INHERITED, "PYTHONINSPECT", "PYTHONSTARTUP")
 _FOLDERS = ("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX")
-"""Variables that name a folder to load code from: a relative one would resolve inside the opened folder."""
+"""Variables that name a folder with code. A relative path in them would be resolved inside the opened folder."""
 
 
 def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:

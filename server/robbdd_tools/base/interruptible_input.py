@@ -1,4 +1,4 @@
-"""An input of this process whose read another thread can end, where the operating system has ``poll``."""
+"""Read an input of this process so that another thread can interrupt the read. This needs the system call ``poll``."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
 
 CAN_INTERRUPT = hasattr(select, "poll")
-"""Whether this system has ``poll``; Windows has none."""
+"""Whether this system has ``poll``, which Windows lacks."""
 
 
 class InterruptibleInput(io.RawIOBase):
-    """The bytes of a file descriptor, until its end or an interruption. Needs ``CAN_INTERRUPT``."""
+    """Reads a file descriptor until its end or an interruption. It needs ``CAN_INTERRUPT``."""
 
     def __init__(self, descriptor: int) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class InterruptibleInput(io.RawIOBase):
         os.write(self._waker, b"\0")
 
     def readable(self) -> bool:
-        """Return that the stream can be read."""
+        """Return true: the stream can be read."""
         return True
 
     def readinto(self, buffer: WriteableBuffer, /) -> int:

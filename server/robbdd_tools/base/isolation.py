@@ -9,19 +9,19 @@ import sys
 
 SEARCHED = "PYTHONPATH"
 INHERITED = "ROBBDD_PYTHONPATH"
-"""Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
+"""Name of an environment variable. It passes ``PYTHONPATH`` to the agent, which searches the absolute folders last."""
 NO_USER_CODE = "ROBBDD_NO_USER_CODE"
-"""Environment variable: if set, none of our processes imports users' code."""
+"""Name of an environment variable. If it is set, none of our processes imports users' code."""
 EXPOSED = (
     "warning: PYTHONPATH has an empty or relative entry, so Python searched the working directory before RobBDD began: "
     "remove this entry, or use python -I -m robbdd_tools\n"
 )
 UNTRUSTED = "untrusted"
-"""Value of ``NO_USER_CODE`` if the workspace is not trusted (rather than ``--no-user-code`` given)."""
+"""``NO_USER_CODE`` has this value if the workspace is not trusted, but not if ``--no-user-code`` was given."""
 OWNER_FORBIDS = "worker"
-"""Value of ``NO_USER_CODE`` on a worker of a cluster whose owner does not allow users' code."""
+"""``NO_USER_CODE`` has this value on a cluster worker if the worker's owner does not allow users' code."""
 WORKER_USER_CODE = "ROBBDD_WORKER_USER_CODE"
-"""Environment variable of a worker of a cluster: its value ``allow`` permits users' code."""
+"""Name of an environment variable of cluster workers. Its value ``allow`` permits users' code."""
 
 
 def isolate() -> None:

@@ -1,5 +1,6 @@
-"""Limits that keep hostile or broken input from exhausting the machine. The user can change each; an opened folder
-cannot.
+"""Limits that keep hostile or broken input from exhausting the machine.
+
+The user can change each limit, but an opened folder cannot.
 
 A limit is read from its environment variable, so that child processes have the same limits; the server sets these
 variables from the editor's setting ``robbdd.limits``. See docs/limits.md.
@@ -41,31 +42,31 @@ class Limit:
 
 
 MODEL_SIZE = Limit("model-size", 8 * MIB, "bytes")
-"""A model, setting, template, query or shapes file; hand-written ones are far smaller."""
+"""Largest file of a model, settings, a template, a query or shapes. Hand-written files are far smaller."""
 SOURCE_SIZE = Limit("source-size", MIB, "bytes")
-"""A Python file or a robot's model, with its included files, that is read while editing; reading one takes 0.5 s."""
+"""Largest Python file, or robot model with its included files, to read while editing. Reading one takes 0.5 s."""
 RESULT_SIZE = Limit("result-size", 512 * MIB, "bytes")
-"""A file of a run (results, manifest, trace), or a mesh or texture of a scene's model."""
+"""Largest file of a run (results, manifest, trace), and largest mesh or texture of a scene's model."""
 MESSAGE_SIZE = Limit("message-size", 64 * MIB, "bytes")
-"""The content of one message to the language server."""
+"""Largest content of one message to the language server."""
 HEADER_SECONDS = Limit("header-seconds", 30, "seconds")
-"""Time from the first byte of a message's header to its end, for a TCP client; editors send it at once."""
+"""A TCP client must send the header of a message within this time from its first byte. Editors send it at once."""
 SCANNED_ENTRIES = Limit("scanned-entries", 200_000, "files and folders")
-"""Entries that one search of a folder visits."""
+"""Maximum number of entries that one search of a folder visits."""
 SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
-"""Nesting depth of folders that one search enters."""
+"""Maximum nesting depth of the folders that one search enters."""
 VALIDATION_SECONDS = Limit("validation-seconds", 120, "seconds")
-"""Time for one validation of a file; 10,000 lines take about 5 s of CPU time."""
+"""Maximum time for one validation of a file. 10,000 lines take about 5 s of CPU time."""
 TEMPLATE_SECONDS = Limit("template-seconds", 10, "seconds")
-"""Time for one block of a user's template; ours take milliseconds."""
+"""Maximum time to render one block of a user's template. Blocks of our templates take milliseconds."""
 TEMPLATE_OUTPUT = Limit("template-output", 8 * MIB, "bytes")
-"""Text that one block of a user's template may make."""
+"""Largest text that one block of a user's template may make."""
 TEMPLATE_MEMORY = Limit("template-memory", 512 * MIB, "bytes")
-"""Address space of the process that renders a user's template, where the system can limit it."""
+"""Largest address space of the process that renders a user's template, if the system can limit it."""
 SCENE_SECONDS = Limit("scene-seconds", 30, "seconds")
-"""Time to set up the scene instances of a file while it is checked; the examples take a second."""
+"""Maximum time to set up the scene instances of a file while it is checked. The examples take a second."""
 SCENE_MEMORY = Limit("scene-memory", 2048 * MIB, "bytes")
-"""Address space of the process that does so, where the system can limit it; the examples take 250 MiB."""
+"""Largest address space of the process that sets them up, if the system can limit it. The examples take 250 MiB."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
@@ -88,7 +89,7 @@ LIMITS: Mapping[str, Limit] = {
 
 
 def use_limits(stated: object) -> str | None:
-    """Set the limits that an editor's setting states, and reset all others. The setting maps names to values.
+    """Set the limits in an editor's setting, and reset all others. The setting maps names to values.
 
     Returns a description of the errors in the setting, or ``None``. A setting with errors changes nothing.
     """

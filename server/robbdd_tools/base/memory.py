@@ -13,8 +13,10 @@ Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 YOUNG, OLDER, OLD = 100_000, 50, 100
-"""Thresholds of ``gc.set_threshold``: objects made before the youngest are searched, and searches before each older
-generation is."""
+"""Thresholds of ``gc.set_threshold``.
+
+The youngest generation is searched after ``YOUNG`` new objects, each older one after so many searches of the younger.
+"""
 
 
 def collect_rarely() -> None:
@@ -29,15 +31,15 @@ def collect_recent() -> None:
     """Free the reference cycles among the objects made since the last search. This takes a few milliseconds.
 
     Every rdflib graph is a cycle. Call this function after work that builds graphs, because after ``collect_rarely``
-    they would accumulate. Every ``OLD``-th call searches all objects: so many explicit searches keep Python from doing
-    it, and a cycle that was in use during the call after it was made would stay for ever.
+    they would accumulate. Every ``OLD``-th call searches all objects, because explicit searches keep Python from doing
+    so. Otherwise, a cycle that is still in use during the first call after its creation would stay for ever.
     """
     gc.collect(2 if gc.get_count()[2] >= OLD else 1)
 
 
 @contextmanager
 def freeze_garbage_collection() -> Generator[None]:
-    """Turn garbage collection off while modules are loaded. Objects made in this time are never collected."""
+    """Turn garbage collection off while modules are loaded. Objects made during this time are never collected."""
     gc.disable()
     yield
     gc.freeze()

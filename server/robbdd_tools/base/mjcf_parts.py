@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from robbdd_tools.base.model_xml import Element
 
 MAIN = "main"
-"""Name of the class of an element without one."""
+"""The class of an element that names no class."""
 _MOVED = ("joint", "tendon", "site", "body", "jointinparent", "cranksite")
-"""Attributes of an actuator that name what it acts on."""
+"""Attributes of an actuator that name the part on which it acts."""
 _WORLD = {"joint": "joint", "freejoint": "joint", "site": "site", "geom": "geom", "body": "body"}
 _SLIDING = {"slide": "m", "hinge": "deg"}
 
@@ -26,7 +26,7 @@ _SLIDING = {"slide": "m", "hinge": "deg"}
 class _Context:
     """Context of an element: the section of the file, the body, and the class of its parts.
 
-    ``in_frame`` if a ``frame`` of MJCF moves it in the body.
+    ``in_frame`` is true if an MJCF ``frame`` moves the element within the body.
     """
 
     section: str = ""
@@ -56,7 +56,7 @@ def mjcf_parts(elements: list[Element]) -> Iterator[ModelPart]:
 
 
 def _inner(element: Element, outer: _Context, *, is_section: bool) -> _Context:
-    """Return the context of the elements inside of an element."""
+    """Return the context of the elements inside an element."""
     if is_section:
         return _Context(element.tag, childclass=element.attributes.get("childclass", ""))
     if element.tag not in ("body", "frame", "replicate"):
@@ -73,13 +73,13 @@ def _kind(element: Element, outer: _Context) -> str | None:
 
 
 def _masses(elements: list[Element]) -> dict[int, float]:
-    """Return the stated masses (kg) of bodies, by the number of their element."""
+    """Return the masses (kg) that the file states for bodies, by the number of the body's element."""
     every = ((one.parent, numbers_in(one.attributes.get("mass"))) for one in elements if one.tag == "inertial")
     return {body: mass[0] for body, mass in every if mass}
 
 
 class _Defaults:
-    """The default classes of a file. A class inside of another one has its values, too."""
+    """The default classes of a file. A nested class inherits the values of the outer one."""
 
     def __init__(self, elements: list[Element]) -> None:
         self._values: dict[str, dict[str, dict[str, str]]] = {}

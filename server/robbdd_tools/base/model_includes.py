@@ -20,7 +20,7 @@ Read = Callable[[Path], str | bytes]
 
 
 def model_files(path: Path, read: Read = load_bytes) -> Iterator[Path]:
-    """Yield a model file, the existing files that it names and its SRDF files, each file once and of whatever kind."""
+    """Yield a model file, the existing files of any kind that it names, and its SRDF files; each file once."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:

@@ -11,9 +11,9 @@ class ModelPart:
     """A part of a model file.
 
     - ``kind``: ``body``, ``joint``, ``site``, ``geom`` or ``actuator``; a link of URDF is a body, and its collision
-      shapes are geoms. ``visual`` is a shape of URDF that is only seen.
+      shapes are geoms. ``visual`` is a URDF shape without collisions.
     - ``name``: its name, or ``""``.
-    - ``word``: the format's own word for it, such as ``link``.
+    - ``word``: the format's own word for the kind, such as ``link``.
     - ``owner``: the body that it belongs to, or ``""``.
     - ``facts``: what the file states about it, in words with units.
     - ``path`` and ``start``: its file, and the offset of its element in code points.
@@ -29,7 +29,7 @@ class ModelPart:
 
 
 def numbers_in(text: str | None) -> tuple[float, ...]:
-    """Return the numbers of an attribute; none if it has other words."""
+    """Return the numbers in an attribute; none if it contains anything else."""
     try:
         return tuple(float(number) for number in (text or "").split())
     except ValueError:

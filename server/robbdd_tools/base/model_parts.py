@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from robbdd_tools.base.model_xml import Element
 
 KEPT = 32
-"""Number of models that are kept."""
+"""Number of cached models."""
 _GENERATING = frozenset({"replicate", "composite", "flexcomp", "attach"})
 """Elements of MJCF that create bodies whose names are not in the text."""
 _GIVEN = {"body": r"part\d+", "joint": r"joint\d+", "actuator": r"actuator\d+", "geom": r"robbdd-face\d+"}
-"""Names that a run gives to unnamed parts."""
+"""Patterns of the names that a run gives to unnamed parts."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelParts:
-    """The contents of a model file, as its text states them.
+    """The contents of a model file according to its text.
 
-    - ``format``: ``mjcf`` or ``urdf``; ``""`` if it cannot be read, for the reason ``problem``.
+    - ``format``: ``mjcf`` or ``urdf``; ``""`` if the file cannot be read. ``problem`` is the reason.
     - ``title``: the name of the model.
-    - ``missing``: reasons why a run refuses the model: collision meshes that do not exist.
-    - ``is_complete``: whether the text has the names of all parts.
-    - ``files``: the files that it includes, also missing ones, and itself.
+    - ``missing``: one sentence for each missing collision mesh, because of which a run refuses the model.
+    - ``is_complete``: whether the text contains the names of all parts.
+    - ``files``: the model file itself and the files that it includes, even missing ones.
     """
 
     format: str = ""
@@ -46,16 +46,16 @@ class ModelParts:
     files: tuple[Path, ...] = ()
 
     def names(self, *kinds: str) -> Iterator[ModelPart]:
-        """Yield the named parts of some kinds, in the order of the kinds, then of the text."""
+        """Yield the named parts of some kinds, kind by kind in the given order. Parts of one kind are in text order."""
         for kind in kinds:
             yield from (part for part in self.parts if part.kind == kind and part.name)
 
     def find(self, name: str, *kinds: str) -> ModelPart | None:
-        """Return the part of a name. If parts of several kinds have it, the first kind counts."""
+        """Return the part that has a name. If parts of several kinds have it, the first kind takes precedence."""
         return next((part for part in self.names(*kinds) if part.name == name), None)
 
     def may_have(self, name: str, *kinds: str) -> bool:
-        """Return whether a part of some kinds may have a name: also one that is not in the text."""
+        """Return whether a part of some kinds may have a name, even if the text does not contain the name."""
         if not self.is_complete or self.find(name, *kinds) is not None:
             return True
         unnamed = {part.kind for part in self.parts if not part.name}

@@ -16,9 +16,9 @@ from robbdd_tools.base.limits import MIB, SOURCE_SIZE
 from robbdd_tools.base.source_texts import load_source
 
 MAX_FILES = 256
-"""Files that a model may include."""
+"""Maximum number of files that a model may include."""
 MAX_INCLUDED = 32
-"""Nesting depth of included files."""
+"""Maximum nesting depth of included files."""
 
 
 class UnreadableModel(ValueError):
@@ -30,7 +30,8 @@ class Element:
     """An element of XML.
 
     - ``path`` and ``start``: its file, and the offset of its ``<`` in code points.
-    - ``parent``: the number of the enclosing element, or -1. Included elements are inside of the element that includes.
+    - ``parent``: the number of the enclosing element, or -1. The elements of an included file are
+      inside the element that includes the file.
     """
 
     tag: str
@@ -53,7 +54,7 @@ class _Raw:
 class ModelReader:
     """Reads a model file with the files that it includes.
 
-    ``files`` are all files that it has named, also missing ones.
+    ``files`` are all files that the model names, even missing ones.
     """
 
     main: Path
@@ -143,7 +144,7 @@ class _Parser:
         raise UnreadableModel("declares entities, which are not read")
 
     def _offset(self) -> int:
-        """Return the offset of the current element in code points. The parser counts bytes of UTF-8."""
+        """Return the offset of the current element in code points. The parser itself counts UTF-8 bytes."""
         byte = self._parser.CurrentByteIndex
         self._point += len(self._data[self._byte : byte].decode(errors="replace"))
         self._byte = byte

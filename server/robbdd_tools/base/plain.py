@@ -16,8 +16,8 @@ _SCALARS = (bool, int, float, str)
 def from_plain(kind: type[Kind], data: object) -> Kind:
     """Return the dataclass that JSON data describes. Raises ``TypeError``, ``ValueError`` or ``KeyError``.
 
-    Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``. A value of the
-    wrong type is refused, except an integer for a float.
+    Fields may be plain values, dataclasses, and tuples and mappings of these. Each of them may be optional (``None``).
+    A value of the wrong type is refused, but an integer is accepted for a float.
     """
     return cast(Kind, _value(kind, data))
 

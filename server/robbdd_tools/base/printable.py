@@ -14,7 +14,7 @@ _CI_PREFIX = re.compile(r"##(?=[\w-]*\[)")
 _CI_LINE = re.compile(r"\A(\s*):(?=:)")
 """Start of commands to GitHub's runner, recognised at the start of a line: ``::error::``."""
 _CI_LINES = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
-"""The same at the start of any line of a document."""
+"""Such a command at the start of any line of a document."""
 
 
 def printable(line: str) -> str:
@@ -58,7 +58,7 @@ def printable_python(text: str) -> str:
 
 
 def _without_commands(text: str, colon: str, hash_sign: str) -> str:
-    """Replace the signs that begin CI commands by text that the format reads as the same signs."""
+    """Escape the characters that begin CI commands. The format reads the escapes as the same characters."""
     return _CI_LINES.sub(rf"\1{colon}", _CI_PREFIX.sub(rf"#{hash_sign}", text))
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypedDict
 
 END_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
-"""Signals that ask a program to end; a system may lack some."""
+"""Signals that ask a program to end. A system may lack some of them."""
 CTRL_C: int = signal.SIGINT
 """The signal that Ctrl-C sends."""
 NICENESS = 10

@@ -1,4 +1,4 @@
-"""Conditions on the properties of elements, such as ``colour = red``: which values satisfy them."""
+"""Evaluate conditions on the properties of elements, such as ``colour = red``."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Properties = Mapping[str, Sequence[PropertyValue]]
 
 @dataclass(frozen=True, slots=True)
 class PropertyCondition:
-    """``name comparison value``. ``not`` compares with true and also holds for elements without the property."""
+    """``name comparison value``. ``not`` means "is not true", which also holds for elements without the property."""
 
     name: str
     comparison: str
@@ -38,7 +38,8 @@ class PropertyCondition:
     def holds(self, properties: Properties) -> bool:
         """Return whether an element with some properties satisfies the condition.
 
-        ``=``: one of its values is equal. All others: it has the property, and each of its values satisfies them.
+        ``=`` holds if one of the element's values is equal, ``not`` if none is. Any other comparison holds if the
+        element has the property and each of its values satisfies the comparison.
         """
         values = properties.get(self.name, ())
         if self.comparison == EQUAL:
@@ -48,7 +49,7 @@ class PropertyCondition:
         return bool(values) and all(self._satisfied(value) for value in values)
 
     def compares(self, value: PropertyValue) -> bool:
-        """Return whether a value can be compared with that of the condition."""
+        """Return whether a value can be compared with the value of the condition."""
         same_kind = value.measures == self.value.measures
         return same_kind and (self.comparison not in ORDERS or value.kind in (NUMBER, QUANTITY))
 

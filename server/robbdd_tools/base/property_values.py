@@ -13,8 +13,8 @@ TEXT, NUMBER, QUANTITY, TRUTH, ELEMENT = "text", "number", "quantity", "truth va
 class PropertyValue:
     """One value of a property.
 
-    ``kind`` is a constant of this module. ``text`` is the value as text; that of an element is its IRI, and that of a
-    quantity has one space before its unit.
+    ``kind`` is a constant of this module. ``text`` is the value as text. For an element, it is the IRI. For a
+    quantity, it has one space before the unit.
     """
 
     kind: str
@@ -27,6 +27,6 @@ class PropertyValue:
 
 
 def quantity_value(text: str) -> PropertyValue:
-    """Return the value of the literal of a quantity. A text that is no quantity of the language stays a text."""
+    """Return the value of a quantity's literal. A text that is not a quantity of the language stays a text."""
     found = split_quantity(text.strip())
     return PropertyValue(TEXT, text) if found is None else PropertyValue(QUANTITY, " ".join(found))

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from robbdd_tools.base.python_outline import PythonName
 
 MAX_LISTED = 2000
-"""Entries of a folder that are searched for modules."""
+"""Maximum number of entries of a folder that are searched for modules."""
 MAX_IMPORTS = 8
-"""Imports that are followed from a name to its definition."""
+"""Maximum number of imports that are followed from a name to its definition."""
 
 
 @dataclass(frozen=True, slots=True)

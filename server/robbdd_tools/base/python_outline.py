@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.files import FileState
 
 MAX_SIGNATURE = 200
-"""Largest number of characters of a signature."""
+"""Maximum number of characters of a signature."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class PythonName:
 
     - ``kind``: ``class``, ``function``, ``value`` or ``import``.
     - ``start``, ``end``: the offsets of the name in the file's text, in code points.
-    - ``signature``: the parameters in parentheses, those of ``__init__`` for a class.
+    - ``signature``: the parameters in parentheses. For a class, they are the parameters of ``__init__``.
     - ``imported``: for an import, the module (relative ones with leading dots) and the attribute, or ``""`` for the
       module itself.
     """
@@ -138,7 +138,7 @@ class _Reader:
         return PythonName(name, "import", start, start + len(alias.name), imported=origin)
 
     def _offset(self, line: int, column: int) -> int:
-        """Return the offset of a place of the syntax tree: a line from 1, a column in bytes of UTF-8."""
+        """Return the offset of a place in the syntax tree. Its line counts from 1, its column in UTF-8 bytes."""
         text = self._document.line_text(line - 1)
         inside = column if text.isascii() else len(text.encode()[:column].decode(errors="ignore"))
         return self._document.line_starts[line - 1] + inside

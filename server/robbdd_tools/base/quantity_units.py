@@ -1,4 +1,4 @@
-"""Units of quantities: what they measure, and their size in SI units."""
+"""Units of quantities, with the dimensions that they measure and their sizes in SI units."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ UNITS = {
     "deg/s": ("angular speed", pi / 180),
     "%": ("ratio", 0.01),
 }
-"""Unit → what it measures, and its size in the SI unit. All are codes of UCUM (Unified Code for Units of Measure)."""
+"""Unit → its dimension, and its size in the SI unit. All units are UCUM codes (Unified Code for Units of Measure)."""
 _QUANTITY = re.compile(r"([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S+)")
 
 
 class QuantityError(ValueError):
-    """A text is not a quantity, or the quantity measures something else. The message says what to write."""
+    """A text is not a quantity, or the quantity has another dimension. The message says what to write."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def is_quantity(text: str) -> bool:
 
 
 def dimension_of(text: str) -> str:
-    """Return what a quantity measures, such as ``length``; empty for any other text."""
+    """Return the dimension of a quantity, such as ``length``; empty for any other text."""
     found = split_quantity(text)
     return "" if found is None else UNITS[found[1]][0]
 
@@ -70,7 +70,7 @@ def split_quantity(text: str) -> tuple[str, str] | None:
 
 
 def units_of(dimension: str) -> tuple[str, ...]:
-    """Return the units that measure something."""
+    """Return the units of a dimension."""
     return tuple(unit for unit, (measures, _) in UNITS.items() if measures == dimension)
 
 
@@ -87,7 +87,7 @@ def read_quantity(text: str, dimension: str) -> Quantity:
 
 
 def with_unit(dimension: str) -> str:
-    """Return the words that tell how to write a quantity."""
+    """Return the instruction to write a quantity with a unit."""
     return f"write {_article(dimension)} with its unit, as in '5 {units_of(dimension)[0]}'"
 
 

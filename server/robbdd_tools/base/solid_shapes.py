@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 Vector = tuple[float, float, float]
-"""Metres, x y z."""
+"""A vector x, y, z in m."""
 
 
 class ShapeKind(StrEnum):
@@ -18,7 +18,7 @@ class ShapeKind(StrEnum):
 
 
 class SolidKind(StrEnum):
-    """Kinds of shapes in files that take part in contacts as they are."""
+    """Kinds of shapes in model files whose exact geometry takes part in contacts."""
 
     BOX = "box"
     CYLINDER = "cylinder"
@@ -29,11 +29,13 @@ class SolidKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A shape of a file that is not a primitive aligned with its object: contacts are with it, not with its box.
+    """A shape of a model file that is not a primitive aligned with its object.
+
+    Contacts are computed with this shape, not with its bounding box.
 
     - ``size``: half edges of a box, (radius, half length, 0) along its own z axis, or radii of an ellipsoid (m).
-    - ``offset`` (m) and ``rotation`` (w, x, y, z): its frame, from the centre of its bounding box.
-    - ``vertices``: those of the convex hull of a mesh, from the same centre, aligned with the object (m).
+    - ``offset`` (m) and ``rotation`` (w, x, y, z): its frame, relative to the centre of its bounding box.
+    - ``vertices``: the vertices (m) of a mesh's convex hull, relative to the same centre and along the object's axes.
     """
 
     kind: SolidKind
@@ -45,7 +47,7 @@ class Solid:
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """How the mass of an object is distributed: its centre (m), and the inertia about it for 1 kg (m²).
+    """The mass distribution of an object: its centre of mass (m), and the inertia about this centre for 1 kg (m²).
 
     ``moments`` are xx, yy, zz, xy, xz and yz, in the frame of the object.
     """
@@ -62,8 +64,9 @@ class Shape:
       along z.
     - ``position``: the centre of the shape.
     - ``surface``: the surface velocity (m/s, along one axis) of a driven belt; ``None`` for other shapes.
-    - ``solid``: what is in contact, if it is not this primitive: then that is its bounding box, a box.
-    - ``friction`` and ``color`` (RGBA): its own, where they differ from those of the object.
+    - ``solid``: the shape that contacts are computed with, if it is not this primitive. The primitive is
+      then the bounding box of this shape.
+    - ``friction`` and ``color`` (RGBA): the values of this shape, if they differ from the object's.
     """
 
     kind: ShapeKind

@@ -1,6 +1,6 @@
 """The texts of files that models name: Python code, steps, and descriptions of robots (MJCF, URDF).
 
-An editor's unsaved text replaces the file's, for analysis only: runs read the files.
+Analysis reads an editor's unsaved text instead of the file. Runs always read the file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from robbdd_tools.base.limits import SOURCE_SIZE
 
 @dataclass(slots=True)
 class _Editor:
-    """The unsaved texts by the real paths of their files. Each text has a number that no other one has had."""
+    """The unsaved texts by the real paths of their files. Each text has a number that is never used again."""
 
     texts: Mapping[str, tuple[int, str]] = field(default_factory=dict[str, tuple[int, str]])
     numbers: count[int] = field(default_factory=lambda: count(1))
@@ -67,7 +67,7 @@ def unsaved_source(path: Path) -> str | None:
 
 
 def source_xml(path: Path) -> str | bytes:
-    """Return the current XML of a file: its unsaved text, or its bytes, whose encoding the XML declares.
+    """Return the current XML of a file: its unsaved text, or its bytes, in the encoding that the XML declares.
 
     Raises ``UnreadableFile`` and ``OSError``.
     """

@@ -1,4 +1,4 @@
-"""One URI for each file, also where the file system ignores case: ``Cell.bdd`` and ``cell.bdd`` can be one file."""
+"""Find one URI for each file. If the file system ignores case, ``Cell.bdd`` and ``cell.bdd`` can be one file."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from robbdd_tools.base.stored_names import is_same_file, stored_path, without_ca
 
 
 class Spellings:
-    """Maps each URI of a file to a single one: the URI of an open document, or the first that was used.
+    """Maps each URI of a file to a single one: the URI of an open document, or else the first URI that was used.
 
-    Only URIs that differ in nothing but case are compared on the disk, when the second of them is used for the first
-    time. All other calls look the URI up in memory. Several threads may use one object.
+    Only URIs that differ just in case are compared on the disk, once, when the second URI is first used. All other
+    calls look the URI up in memory. Several threads may use one object.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class Spellings:
         self._lock = Lock()
 
     def of(self, uri: str) -> str:
-        """Return the URI that stands for a file."""
+        """Return the URI that represents a file."""
         chosen = self._chosen.get(uri)
         if chosen is not None:
             return chosen
@@ -33,9 +33,10 @@ class Spellings:
             return self._add(uri)
 
     def open(self, uri: str) -> list[str]:
-        """Let the URI of an open document stand for its file. Return the other URIs of the file.
+        """Let the URI of an open document represent its file. Return the other URIs of the file.
 
-        If the file is already open by another URI, that one keeps the file, and the new URI names its own document.
+        If the file is already open under another URI, that URI still represents the file. The new URI then names a
+        document of its own.
         """
         with self._lock:
             before = self._add(uri)
@@ -47,12 +48,12 @@ class Spellings:
             return others
 
     def close(self, uri: str) -> None:
-        """Let another URI stand for the file of a closed document if it is opened by that one."""
+        """Record that a document is closed. If its file is then opened under another URI, that URI represents it."""
         with self._lock:
             self._open.discard(uri)
 
     def stored(self, uri: str, parts: int) -> Path | None:
-        """Return the path of a file as the file system stores its last ``parts`` names, if the URI has other ones."""
+        """Return a file's path with its last ``parts`` names as stored on disk; ``None`` if the URI has these names."""
         with self._lock:
             known = self._stored.setdefault(_key(uri), {})
             if (uri, parts) not in known:
@@ -61,7 +62,7 @@ class Spellings:
             return known[uri, parts]
 
     def reset(self, uri: str) -> list[str]:
-        """Compare a file again, as it may be another one now. Return its URIs."""
+        """Compare a file again, because its URI may lead to another file now. Return the URIs of the file."""
         with self._lock:
             self._stored.pop(_key(uri), None)
             alike = self._alike.pop(_key(uri), [])

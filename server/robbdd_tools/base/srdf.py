@@ -1,4 +1,4 @@
-"""SRDF files: groups, end effectors, named states and ignored collisions of a robot, beside its URDF file."""
+"""SRDF files: groups, end effectors, named states and ignored collisions of a robot. They are near its URDF file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 FOLDERS = (".", "srdf", "config", "../srdf", "../config")
-"""Folders, from that of a URDF file, in which its SRDF file is looked for."""
+"""Folders that are searched for the SRDF file of a URDF file, relative to the URDF file's folder."""
 
 
 class UnreadableSrdf(ValueError):
@@ -57,7 +57,7 @@ class Srdf:
 
 
 def srdf_files(urdf: Path) -> tuple[Path, ...]:
-    """Return the SRDF files of a URDF file: that of the same name, else all that name the same robot."""
+    """Return the SRDF file named like a URDF file or, if there is none, all SRDF files that name the same robot."""
     same = urdf.with_suffix(".srdf")
     if urdf.suffix.lower() != ".urdf":
         return ()

@@ -1,4 +1,4 @@
-"""Names of files as the file system stores them, where a path has other upper and lower case letters.
+"""Find the names of files as the file system stores them, for paths that differ from them in case.
 
 Windows and macOS usually ignore case in names (and macOS the Unicode form of accents), so a path can be valid there and
 missing elsewhere.
@@ -32,7 +32,7 @@ def is_same_file(one: Path, other: Path) -> bool:
 def stored_path(path: Path, parts: int) -> Path | None:
     """Return an existing path with its last ``parts`` names as they are stored.
 
-    Return ``None`` if the path has the stored names already, which is always so where case matters.
+    Return ``None`` if the path already has the stored names. This is always so on file systems where case matters.
     """
     # This one look is enough where case matters, so that no folder is listed there.
     if not is_same_file(path, path.with_name(path.name.swapcase())):
@@ -42,7 +42,7 @@ def stored_path(path: Path, parts: int) -> Path | None:
 
 
 def alike_path(path: Path) -> Path | None:
-    """Return an existing path that differs from a missing one in upper and lower case only; ``None`` if there is none.
+    """Return an existing path that differs from a missing path only in case; ``None`` if there is none.
 
     The names of folders may differ, too.
     """

@@ -16,7 +16,7 @@ _SHAPES = {"collision": "geom", "visual": "visual"}
 _UNITS = {"revolute": ("rad", "N m"), "continuous": ("rad", "N m"), "prismatic": ("m", "N")}
 _NONE: Mapping[str, str] = {}
 WORLD = "world"
-"""Name of a root link that is the world itself."""
+"""A root link with this name is the world itself."""
 
 
 def urdf_parts(elements: list[Element]) -> Iterator[ModelPart]:

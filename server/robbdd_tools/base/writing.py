@@ -23,7 +23,7 @@ TEMPORARY = ".robbdd-"
 """Prefix of temporary files; they end in ``.tmp``, so that no reader takes them for results."""
 
 _STREAMS = (("dev",), ("proc",))
-"""First folders of paths that name an open stream, such as ``/dev/stdout``, even if redirected to a file."""
+"""A path in one of these folders may name an open stream, such as ``/dev/stdout``, even if redirected to a file."""
 
 
 def replace_file(path: Path, content: str | bytes) -> None:

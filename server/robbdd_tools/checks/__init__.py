@@ -1,8 +1,8 @@
 """Semantic rules beyond syntax, names and shapes. There is one file for each diagnostic code.
 
-A rule checks either one declaration with its references, or a whole file. In the first case, it is checked again only
-when the declaration or one of its references has changed. In the second case, it may do only a few operations for each
-declaration.
+A rule checks either one declaration with its references, or a whole file. A rule on declarations checks a declaration
+again only when the declaration or one of its references has changed. A rule on files may spend only a few operations on
+each declaration.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ _RULED: frozenset[type[object]] = frozenset(
         tree.Execution,
     }
 )
-"""Declarations that rules check."""
+"""Kinds of declarations that rules check."""
 
 
 def _findings(site: Site) -> tuple[Anchored, ...]:

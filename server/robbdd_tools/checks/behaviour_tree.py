@@ -27,7 +27,7 @@ CODE = "behaviour-tree"
 class Link:
     """A link from a behaviour to a node of a tree.
 
-    The behaviour is identified by its document and path. The place is that of the reference to the node.
+    The document and the path identify the behaviour. The place is the place of the reference to the node.
     """
 
     node: tuple[str, str]
@@ -39,7 +39,7 @@ class Link:
 
 
 def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Check the behaviour trees of a file, including links from files that import it, and the file's own links."""
+    """Check the links in a file, and the behaviour trees of the file with all links to them from importing files."""
     for link in links_in(file):
         if link.is_repeated:
             message = (
@@ -113,7 +113,7 @@ def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]
 
 
 def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
-    """Yield the behaviour of a valid template if it is the only one, linked to no node and not repeated."""
+    """Yield the behaviour of a valid template if it is the only one, is not linked to a node and is not repeated."""
     root = declaration.tree
     when = root.body.parts[0].when if isinstance(root, tree.Template) and not declaration.faults else None
     if isinstance(root, tree.Template) and when is not None and len(list(root.body.behaviours)) == 1:
@@ -123,7 +123,7 @@ def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
 
 
 def _apart(snapshot: Snapshot, links: list[Link]) -> Iterator[Fix]:
-    """Yield the fix that removes some links. Each of them conflicts with other links."""
+    """Yield the fix that removes some links, each of which conflicts with other links."""
     removals = [fix for link in links for fix in _without(snapshot, link, "")]
     names = listed(list(dict.fromkeys(link.behaviour.name.text for link in links)))
     if removals and len(removals) == len(links):

@@ -21,7 +21,7 @@ CODE = "catalog-entry"
 
 
 def known_entries(language: str) -> Mapping[str, object]:
-    """Return the entries that ``catalog "…"`` may name in a kind of file: executors in an execution, else models."""
+    """Return the entries that ``catalog "…"`` may name in a kind of file: executors in a ``.bddx``, else models."""
     catalog = load_catalog()
     return EXECUTORS if language == "bddx" else {**catalog.robots, **catalog.objects}
 
@@ -40,7 +40,7 @@ def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def not_in_catalog(what: str, name: str, known: Mapping[str, object]) -> tuple[str, list[str]]:
-    """Return the message on a name that the catalog lacks, and the most similar entries."""
+    """Return the message on a name that the catalog lacks, and the names of the most similar entries."""
     close = get_close_matches(name, known, n=3, cutoff=0.6)
     message = f"the catalog has no {what} '{name}'"
     return message + (f"; did you mean '{close[0]}'?" if close else f": it has {', '.join(sorted(known))}"), close

@@ -1,6 +1,6 @@
 """``catalog-models``: list the catalog models of a scene that has no executable scene.
 
-Names of elements select them.
+The names of elements select these models.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _is_executable(snapshot: Snapshot, scene: str) -> bool:
 
 @kept_with_key
 def _executable_scenes(snapshot: Snapshot) -> frozenset[str]:
-    """Return how the executable scenes of all files name theirs."""
+    """Return the names by which the executable scenes of all files refer to their scenes."""
     files = (source for uri, source in snapshot.sources.items() if language_of(uri) == "scenex")
     placed = (entry for file in files if isinstance(file, FileIndex) for entry in file.declarations)
     roots = (entry.declaration.tree for entry in placed)
@@ -51,7 +51,7 @@ def _executable_scenes(snapshot: Snapshot) -> frozenset[str]:
 
 
 def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:
-    """Return model → names of its elements."""
+    """Return a map from each model to the names of its elements."""
     catalog = load_catalog()
     found: dict[str, list[str]] = {}
     for member in sorted(members, key=lambda element: element.name):

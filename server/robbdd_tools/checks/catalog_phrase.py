@@ -1,4 +1,4 @@
-"""``catalog-phrase``: the text of a ``pred("…")`` says a predicate's phrase, and is judged as this predicate."""
+"""``catalog-phrase``: the text of a ``pred("…")`` is a catalog predicate's phrase and is judged as this predicate."""
 
 from __future__ import annotations
 

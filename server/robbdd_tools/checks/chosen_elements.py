@@ -1,4 +1,4 @@
-"""The elements of sets in variations and quantifiers, also of those that conditions on properties select."""
+"""Find the elements of sets in variations and quantifiers, even if conditions on properties select the elements."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def chosen_elements(site: Site, ref: tree.Ref, where: tree.Where | None) -> tupl
 
 
 def iri_of(site: Site, element: Element) -> str:
-    """Return the IRI of an element; empty for a literal."""
+    """Return the IRI of an element, or an empty string for a literal."""
     uri, path = element.key
     file = site.snapshot.file(uri) if uri else None
     definition = None if file is None else file.definitions.get(path)

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def without_contradicted(snapshot: Snapshot, shapes: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return shape findings without those that no value could avoid.
+    """Return the shape findings that another value could avoid.
 
-    If the clauses of a template contradict each other about a variable, ``type-conflict`` reports the clause, and every
-    value in every variant would violate one of them. Sibling templates may share the variable.
+    If clauses of a template contradict each other about a variable, every value in every variant violates one of them.
+    ``type-conflict`` reports the clause. Sibling templates may share the variable.
     """
     codes = role_shapes()
     spans: dict[str, list[Span]] = {}

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.types import Written
 
 MAX_SCENARIOS = 10_000
-"""Number of scenarios of one variant above which a mistake is assumed; about one night of simulation."""
+"""If a variant has more scenarios than this (about one night of simulation), a mistake is assumed."""
 UNCOUNTED = 10**12
 """Upper limit of a count."""
 

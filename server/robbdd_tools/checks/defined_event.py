@@ -1,4 +1,4 @@
-"""``defined-event``: a behaviour or the scenario is to emit an event that occurs by its own definition."""
+"""``defined-event``: a behaviour or the scenario should emit an event that occurs according to its own definition."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _emitted(template: tree.Template) -> Iterator[tuple[tree.Ref, str]]:
 
 
 def _definition(site: Site, ref: tree.Ref) -> tuple[Site, tree.Name] | None:
-    """Return the name in the definition of an event, or ``None`` if the event has no definition."""
+    """Return the name of an event in its definition, or ``None`` if the event has no definition."""
     target = site.target(ref)
     owner = None if target is None else site_of(site.snapshot, target)
     if target is None or owner is None or not isinstance(owner.tree, tree.Template):

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Node = tuple[str | None, str]
-"""IRI of a namespace, ``None`` where it is declared in another file, and a name in it."""
+"""IRI of a namespace (``None`` if another file declares the namespace), and a name in the namespace."""
 _Owner = tuple[str, SymbolKind, str]
-"""The written namespace of a declaration, its kind and its name. Kind and name matter if the namespace is implied."""
+"""The written namespace of a declaration, its kind and its name. An implied namespace depends on kind and name."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Names of declarations that have the same namespace. ``repeated`` are those that are declared more than once."""
+    """Names of declarations in one namespace. ``repeated`` are the names that are declared more than once."""
 
     names: Set[str]
     repeated: Set[str]
@@ -60,7 +60,7 @@ def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
             first.setdefault(str(definition.iri), definition)
     for definition in repeated:
         other = first.setdefault(str(definition.iri), definition)
-        # All members of a similar set share one declaration.
+        # All members of a ``similar`` set have the same declaration.
         if (other.uri, other.span) != (definition.uri, definition.span):
             yield _report(other, definition)
 
@@ -75,7 +75,7 @@ def _report(first: Definition, second: Definition) -> Diagnostic:
 
 
 def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
-    """Yield the declarations of a file that have one of some names and an IRI of their own."""
+    """Yield the declarations of a file that have one of the given names and their own IRI."""
     for path in file.definitions:
         if path.rpartition(".")[2] in names:
             definition = file.definitions[path]
@@ -110,7 +110,7 @@ def _shared(scope: Scope, own: Mapping[str, list[_Group]], names: set[str]) -> s
 
 
 def _shared_in_large(snapshot: Snapshot, scope: Scope, own: Mapping[str, list[_Group]], names: set[str]) -> set[str]:
-    """Do the same as ``_shared``, without a look at each file."""
+    """Do the same as ``_shared`` by an index of names, because a large scope has too many files to compare."""
     declaring, uri = _declaring(snapshot), scope.own.document.uri
     found: set[str] = set()
     for iri, groups in own.items():
@@ -124,7 +124,7 @@ def _shared_in_large(snapshot: Snapshot, scope: Scope, own: Mapping[str, list[_G
 
 @kept_with_key
 def _declaring(snapshot: Snapshot) -> Mapping[Node, list[str]]:
-    """Return the files that declare each node, those of unknown namespaces by name."""
+    """Return a map from each node to the files that declare it. In unknown namespaces, the IRI is ``None``."""
     found: dict[Node, list[str]] = {}
     for uri, source in snapshot.sources.items():
         for iri, _, group in _own_groups(source) if isinstance(source, FileIndex) else ():
@@ -135,7 +135,7 @@ def _declaring(snapshot: Snapshot) -> Mapping[Node, list[str]]:
 
 @kept_with_key
 def _own_groups(file: FileIndex) -> tuple[tuple[str | None, str, _Group], ...]:
-    """Return the names that must be unique, with the IRI of their namespace, ``None`` if imported, and its name."""
+    """Return each namespace with its unique names: its IRI (``None`` if imported), its name and its group."""
     iris: dict[str, str] = {}
     for placed in file.declarations:
         root = placed.declaration.tree

@@ -22,7 +22,7 @@ CODE = "emission"
 
 
 def emission(site: Site) -> Iterator[Diagnostic]:
-    """Report each such event in the behaviours of a template."""
+    """Report each unknown or repeated event in the ``emits`` of a template's behaviours."""
     for use in _uses(site.placed.declaration):
         events = load_catalog().behaviours[use.action.word].events
         for one in use.emissions:

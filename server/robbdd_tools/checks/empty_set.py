@@ -30,7 +30,7 @@ def empty_set(site: Site) -> Iterator[Diagnostic]:
 
 
 def _line(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
-    """Report a line without values, because it leaves no scenario. A nested empty set is allowed."""
+    """Report a line without values, because the variant then has no scenario. A nested empty set is allowed."""
     site = scenario.site
     related = (related_to(site, column.ref, "the variable"),)
     match written:

@@ -1,4 +1,4 @@
-"""``execution-fit``: parts of an execution do not match, so that a run leaves clauses unknown."""
+"""``execution-fit``: parts of an execution do not fit together, so a run leaves clauses unknown."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CODE = "execution-fit"
 
 
 def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report behaviours that the implementation does not execute, and distances that are not between two elements."""
+    """Report behaviours that the implementation does not execute, and distances not between exactly two elements."""
     for placed in file.of(tree.Execution, tree.Policy):
         site = Site(snapshot, file, placed)
         match site.tree:
@@ -57,12 +57,12 @@ def not_executed(behaviour: str, wanted: list[str]) -> str:
 
 
 def not_two(observed: int) -> str:
-    """Return the message on a distance between another number of elements than two."""
+    """Return the message on a distance that is not between exactly two elements."""
     return f"a distance is between two elements, but {observed} are observed"
 
 
 def _behaviours(site: Site, execution: tree.Execution) -> list[str]:
-    """Return the behaviours of the executed variant, as words of the catalog."""
+    """Return the catalog words of the executed variant's behaviours."""
     variant = site.target(execution.variant)
     template = None if variant is None else _template(site.snapshot, variant)
     if template is None or template.tree is None:

@@ -1,4 +1,4 @@
-"""``external-system``: a process without a program, an endpoint without an address, or a limit that cannot be kept."""
+"""``external-system``: a process has no program, an endpoint has no address, or a time limit is out of range."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CODE = "external-system"
 MOST_SECONDS = 3600.0
-"""Limit of the time within which a system answers."""
+"""Maximum value (s) of the time within which a system must answer."""
 
 
 def external_system(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -29,7 +29,7 @@ def external_system(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def system_fault(kind: str, name: str) -> str:
-    """Return what is wrong with the command line of a process or the address of an endpoint; empty if nothing is."""
+    """Return the fault of a process's command line or of an endpoint's address; empty if there is none."""
     if kind == "process" and not command_words(name):
         return (
             'a process needs a command line with closed quotes: write a program and its arguments, such as "./policy"'

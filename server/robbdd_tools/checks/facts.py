@@ -1,4 +1,4 @@
-"""Data that the rules need about a single declaration; collected once per declaration."""
+"""Collect the data that the rules need about a single declaration, once per declaration."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ UNIQUE_KINDS = frozenset(
         SymbolKind.VARIANT,
     }
 )
-"""Kinds that need unique IRIs; related scenarios share variables and behaviours by name."""
+"""Kinds that need unique IRIs. Variables and behaviours do not, because related scenarios share them by name."""
 _REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
 
 
@@ -51,7 +51,7 @@ class Facts:
     - ``own_names``: the names that it declares and that need unique IRIs, by namespace.
     - ``heads``: the first parts of all names to which it refers.
     - ``clause_paths``: the names of variables in its clauses, as written.
-    - ``unused``: the variables that neither a clause nor a quantifier of their own template uses.
+    - ``unused``: the variables of a template that neither a clause nor a quantifier of the template uses.
     - ``unused_bounds``: the variables of quantifiers that no clause uses.
     """
 
@@ -71,7 +71,7 @@ def facts_of(declaration: Declaration) -> Facts:
     root = declaration.tree
     heads = frozenset(reference.ref.path.partition(".")[0] for reference in declaration.references)
     if declaration.faults:
-        # Text that the parser skipped may use names as well.
+        # The text that the parser skipped may use names, too.
         heads |= frozenset(_REFERRED.findall(declaration.text))
     names = _own_names(declaration)
     clauses = clauses_of(declaration)

@@ -1,4 +1,4 @@
-"""Caches of results by the URI of the file. They can be disabled together, for comparison with fresh results."""
+"""Cache results by the URI of a file. All caches can be disabled together, to compare with fresh results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _CACHES: list[FileCache[Any]] = []
 
 
 class FileCache(Generic[Value]):
-    """The latest result of each of some files."""
+    """Holds the latest result for each file."""
 
     def __init__(self) -> None:
         self._latest: dict[str, Value] = {}
@@ -23,13 +23,13 @@ class FileCache(Generic[Value]):
         return self._latest.get(uri)
 
     def put(self, uri: str, value: Value) -> None:
-        """Replace the result of a file. If there are too many results, the others are dropped."""
+        """Replace the result of a file. If the cache is full, all other results are dropped."""
         if len(self._latest) >= CACHED_FILES:
             self._latest.clear()
         self._latest[uri] = value
 
     def exchange(self, latest: dict[str, Value]) -> dict[str, Value]:
-        """Replace all results and return the former ones."""
+        """Replace all results and return the old ones."""
         former, self._latest = self._latest, latest
         return former
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.tree import Node
 
 MAX_OFFERED = 3
-"""Maximum number of alternative names or values with a fix each."""
+"""Maximum number of alternative names or values for which a fix is offered."""
 
 
 def finding(

@@ -1,4 +1,4 @@
-"""``foreign-variable``: a variant uses a variable of a template that is not its own."""
+"""``foreign-variable``: a variant uses a variable of another template than its own."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _variables(scenario: Scenario) -> Iterator[tree.Ref]:
 
 
 def _is_of_template(scenario: Scenario, found: Definition) -> bool:
-    """Return whether a definition is a variable of a template, not a variable of a quantifier in the variant."""
+    """Return whether a definition is a variable of a template, and not of a quantifier in the variant."""
     extent = scenario.site.span(scenario.variant)
     inside = found.uri == scenario.site.uri and extent.contains(found.span.start)
     return found.kind in VARIABLES and not inside

@@ -1,4 +1,4 @@
-"""Clauses of a graph that a run cannot judge: texts, events, configurations and sets."""
+"""Report clauses of a graph that a run cannot judge, because of texts, events, configurations or sets."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def _places(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagn
 
 
 def _given(variant: Variant, term: Iri | str) -> tuple[Cell, ...]:
-    """Return the values of a variable, or the term itself if it is no variable of the variation."""
+    """Return the values of a variable, or the term itself if it is not a variable of the variation."""
     values = tuple(dict.fromkeys(cell for variable, cell in values_of(variant) if variable == term))
     return values or (term,)
 

@@ -1,4 +1,4 @@
-"""Objects of a graph without a stated correct workspace, in clauses that ask for it."""
+"""Report objects of a graph without a stated correct workspace, if clauses ask for this workspace."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def place_findings(site: GraphSite) -> Iterator[Diagnostic]:
 
 
 def _asked(variant: Variant) -> frozenset[str]:
-    """Return the variables of the objects whose correct places clauses ask for."""
+    """Return the variables of the objects for which clauses ask whether they are in their correct places."""
     clauses = tuple(every_clause((*variant.template.clauses, *variant.clauses)))
     sets = {clause.variable: clause.in_set for clause in clauses if isinstance(clause, ForAll | Exists)}
     asked: set[str] = set()

@@ -1,4 +1,4 @@
-"""Executions of a graph that a run cannot carry out as they are stated."""
+"""Report executions of a graph that a run cannot carry out as stated."""
 
 from __future__ import annotations
 

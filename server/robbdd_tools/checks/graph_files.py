@@ -1,6 +1,6 @@
-"""Rules for models that are graphs: what leaves clauses unknown in a run is reported before it.
+"""Rules for models that are graphs. They report, before a run, the causes of clauses that would stay unknown.
 
-The findings have the codes and messages of the rules for text. Each is at the node that causes it.
+The findings have the codes and messages of the rules for text. Each one is placed at the node that causes it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Elements of a graph's scenes that a run cannot simulate: without a model, a place or room."""
+"""Report elements of a graph's scenes that a run cannot simulate, because they lack a model, a place or room."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def scene_findings(site: GraphSite) -> Iterator[Diagnostic]:
 
 
 def _without_model(site: GraphSite) -> Iterator[Diagnostic]:
-    """Report each element once: as a warning if a scenario uses it, else as an information."""
+    """Report each element once: as a warning if a scenario uses it, otherwise as an information."""
     found: dict[Iri, bool] = {}
     for variant in site.variants:
         instances = _instances(site, variant)

@@ -1,4 +1,4 @@
-"""A graph file with its acceptance criteria, for the rules of graph files."""
+"""A graph file with its acceptance criteria, as the rules for graph files need it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class GraphSite:
 
     @cached_property
     def sets(self) -> dict[Iri, tuple[str, ...]]:
-        """Maps an element to the local names of its sets, by which models are chosen, too."""
+        """Element → the local names of its sets. These names also select models."""
         found: dict[Iri, tuple[str, ...]] = {}
         for name, elements in self.model.sets.items():
             for element in elements:
@@ -53,11 +53,11 @@ class GraphSite:
         return found
 
     def name(self, node: str) -> str:
-        """Return a node as messages name it."""
+        """Return the name of a node in messages."""
         return self.built.names.get(node, node)
 
     def local_name(self, node: str) -> str:
-        """Return the name of a node by which its model is chosen."""
+        """Return the local name of a node, which selects its model."""
         return self.model.curie(node).rpartition(":")[2]
 
     def object_model(self, element: Iri) -> ObjectModel | None:
@@ -65,12 +65,12 @@ class GraphSite:
         return load_catalog().object_for(self.local_name(element), self.sets.get(element, ()))
 
     def robot_model(self, element: Iri) -> RobotModel | ObjectModel | None:
-        """Return the catalog's model for the name of an agent; a person has an object's."""
+        """Return the catalog's model for the name of an agent. For a person, this is the model of an object."""
         catalog, names = load_catalog(), (self.local_name(element), self.sets.get(element, ()))
         return catalog.robot_for(*names) or catalog.bystander_for(*names)
 
     def location(self, node: str) -> Location:
-        """Return the position of a node; the beginning of the file if it is unknown."""
+        """Return the position of a node, or the beginning of the file if the position is unknown."""
         return self.built.sources.node(node) or Location(self.built.uri, Span(0, 0))
 
     def folder(self, node: str) -> Path | None:
@@ -85,7 +85,7 @@ class GraphSite:
 
 
 def values_of(variant: Variant) -> Iterator[tuple[Iri, Cell]]:
-    """Yield each variable of a variation with each of its values; for a selection, with the set of all elements."""
+    """Yield each variable of a variation with each of its values. For a selection, the value is the whole set."""
     variation = variant.variation
     if isinstance(variation, Product):
         for variable, choices in zip(variation.variables, variation.choices, strict=True):

@@ -41,7 +41,7 @@ def hidden_variable(site: Site) -> Iterator[Diagnostic]:
 def _hiding(
     site: Site, node: tree.Node, declared: Mapping[str, tree.Name], bound: Mapping[str, tree.Name]
 ) -> Iterator[Diagnostic]:
-    """Report the quantifiers in a node. ``declared`` are variables of the template, ``bound`` those of outer ones."""
+    """Report the quantifiers in a node. ``declared`` are the template's variables, ``bound`` those of outer ones."""
     if isinstance(node, _Quantifier):
         name = node.variable.text
         hidden = bound.get(name) or declared.get(name)
@@ -94,7 +94,7 @@ def _renamed(site: Site, quantifier: _Quantifier) -> Fix:
 
 
 def _uses(node: tree.Node, name: str) -> Iterator[Span]:
-    """Yield the places of a variable in the body of its quantifier, without the quantifiers in it that hide it."""
+    """Yield the places of a variable in its quantifier's body, but not inside inner quantifiers that hide it."""
     if isinstance(node, tree.Ref) and node.path == name:
         yield node.span
     hides = isinstance(node, _Quantifier) and node.variable.text == name

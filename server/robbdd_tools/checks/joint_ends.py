@@ -19,7 +19,7 @@ _Body = tuple[str, str, str]
 
 
 def joint_ends(site: Site) -> Iterator[Diagnostic]:
-    """Report such joints. A graph (``kgraph``) may have loops, so a body may be the child of several of its joints."""
+    """Report both kinds of joints. In a ``kgraph``, which may have loops, a body may be the child of several joints."""
     match site.tree:
         case tree.KinematicTree(entries=entries):
             yield from _ends(site, entries, one_parent=True)
@@ -56,7 +56,7 @@ def _ends(site: Site, entries: tuple[tree.TreeEntry, ...], *, one_parent: bool) 
 
 
 def _body(site: Site, frame: tree.Ref) -> _Body | None:
-    """Return the body of a frame; ``None`` for an unknown name."""
+    """Return the body of a frame, or ``None`` if the name is unknown."""
     found = site.target(frame)
     if found is None:
         return None

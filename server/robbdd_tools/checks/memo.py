@@ -1,4 +1,4 @@
-"""Keep a value of each declaration, or scenario of a story, until it or a dependency changes."""
+"""Cache a value for each declaration, or each scenario of a story, until it or one of its dependencies changes."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
-"""Declarations whose own references matter to those that refer to them."""
+"""Declarations that pass their dependencies on: what refers to them also depends on what they refer to."""
 _FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
-"""The kinds of their names."""
+"""The kinds of the names of ``_TRANSPARENT`` declarations."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Entry(Generic[Value]):
     """The cached value of a declaration.
 
-    It depends on the declarations in ``around``, and on which declarations have the ``names``. ``paths`` are all
+    The value depends on the declarations in ``around`` and on the declarations of the ``names``. ``paths`` are all
     qualified names that the declaration itself looked up.
     """
 
@@ -50,10 +50,10 @@ class _Run(Generic[Value]):
 
 
 class Kept(Generic[Value]):
-    """Values of the declarations with certain syntax trees. The values of unchanged declarations are kept.
+    """Values of the declarations with certain syntax trees. The values of unchanged declarations are cached.
 
-    ``make`` returns the value of a declaration. It may depend on the declaration, on those that the declaration names,
-    and on the sets and scenes that these name. It must not contain absolute positions.
+    ``make`` returns the value of a declaration. The value may depend on this declaration, on all declarations that it
+    names, and on the sets and scenes that these name. It must not contain absolute positions.
     """
 
     def __init__(self, trees: Set[type[object]], make: Callable[[Site], Value]) -> None:
@@ -139,10 +139,10 @@ def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], fro
 
 
 def _declared_as(scope: Scope, name: str) -> Iterator[Declaration]:
-    """Yield what has a name in the scope's own file, and in others the declarations that are followed.
+    """Yield the declarations of a name in the scope's own file, and the sets and scenes of this name in other files.
 
-    Others matter for what they refer to only: findings are not kept when another file changes. In a large scope the
-    own file's declaration of a kind hides those of the same name and kind.
+    Other files matter only for the names to which their declarations refer, because findings are dropped when another
+    file changes. In a large scope, a declaration in the own file hides others of the same name and kind.
     """
     for entry in scope.own.names.entries.get(name, ()):
         yield scope.own.declarations[entry.declaration].declaration

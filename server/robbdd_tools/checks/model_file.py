@@ -1,4 +1,4 @@
-"""``model-file``: a run cannot use the model file of a scene instance: it is missing, or its text is faulty.
+"""``model-file``: a run cannot use the model file of a scene instance, because it is missing or its text is faulty.
 
 This is a warning, because only a run needs the file. Its text is read, but no engine loads it.
 """
@@ -26,7 +26,7 @@ _FORMATS = {"mjcf": "MJCF", "urdf": "URDF"}
 
 
 def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each path of a model without a file that a run can use."""
+    """Report each path of a model that does not lead to a file that a run can use."""
     own = uri_to_path(file.document.uri)
     if own is None:
         return
@@ -74,7 +74,7 @@ def _missing_package(source: tree.SystemPath | tree.RosPath) -> str | None:
 
 
 def _written(source: tree.SystemPath | tree.RosPath, folder: Path) -> str:
-    """Return the path of a model file: relative to the folder, or absolute in a package."""
+    """Return the path of a model file. It is relative to the folder or, in a package, absolute."""
     if isinstance(source, tree.SystemPath):
         return source.path.value
     return str(model_path(folder, source))
@@ -97,7 +97,7 @@ def model_path(folder: Path, source: tree.ModelSource) -> Path | None:
 
 
 def missing_file(folder: Path, path: str) -> str | None:
-    """Return the reason why a model file cannot be used; ``None`` if it can. Its path is relative to the folder."""
+    """Return the reason why a model file cannot be used, or ``None``. Its path is relative to the folder."""
     missing = f"the model file '{path}' is not on this machine: put it there, or change the path, before a run with it"
     try:
         found = unreadable(folder / Path(path).expanduser())

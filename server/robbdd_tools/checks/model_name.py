@@ -1,7 +1,7 @@
 """``model-name``: a model names a part that its MJCF or URDF file does not have.
 
 The file's text is read, but no engine loads it. The finding is a warning, because the machine that runs the model may
-have another file.
+have another version of the file.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CODE = "model-name"
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 MAX_NAMES = 12
-"""Names of a file that a message lists."""
+"""Maximum number of names of a file that a message lists."""
 WANTED: Mapping[str, tuple[str, ...]] = {
     "map body": ("body",),
     "tool": ("site", "body"),
@@ -41,9 +41,9 @@ WANTED: Mapping[str, tuple[str, ...]] = {
     "pads": ("geom", "body"),
     "joint": ("joint",),
 }
-"""Kinds of the parts that an entry of a model may name; the first one is usual."""
+"""Entry of a model → the kinds of parts that it may name, the usual kind first."""
 ACCEPTED: Mapping[str, tuple[str, ...]] = {**WANTED, "pads": ("geom", "body", "visual")}
-"""The same with kinds that are not suggested."""
+"""Like ``WANTED``, but including kinds that are accepted without being suggested."""
 _PLURALS = {"body": "bodies"}
 
 
@@ -76,7 +76,7 @@ def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def _unmapped(file: FileAnalysis, placed: PlacedDeclaration, folder: Path) -> Iterator[Diagnostic]:
-    """Report each body that is mapped without ``to`` to a file that has no body of its name."""
+    """Report each body that is mapped without ``to`` if the file has no body of this name."""
     uri = file.document.uri
     for model in _models(placed.declaration):
         parts = parts_of(model, folder)
@@ -121,7 +121,7 @@ def _named(model: tree.Model) -> Iterator[PartName]:
 
 
 def parts_of(model: tree.Model, folder: Path) -> ModelParts | None:
-    """Return the parts in the file of a model of a ``.scenex`` in a folder; ``None`` if it names no readable file."""
+    """Return the parts in the file that a model of a ``.scenex`` in a folder names; ``None`` if it is unreadable."""
     path = model_path(folder, model.source)
     if path is None or model.kind == "usd" or not path.is_file():
         return None

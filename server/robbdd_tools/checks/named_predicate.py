@@ -1,4 +1,4 @@
-"""``named-predicate``: the definition of a predicate, or a phrase that uses it, does not fit together."""
+"""``named-predicate``: the definition of a predicate contradicts itself, or a phrase does not fit the definition."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def _kinds(site: Site, value: tree.Argument) -> frozenset[str]:
 
 
 def _foreign_parameters(site: Site) -> Iterator[Diagnostic]:
-    """Report parameters of predicates that are used outside of their definition."""
+    """Report parameters that are used outside the definition of their predicate."""
     for ref in (reference.ref for reference in site.placed.declaration.references):
         found = site.target(ref)
         if found is None or found.kind is not SymbolKind.PARAMETER:

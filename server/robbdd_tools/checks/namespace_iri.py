@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
 
-# RFC 3987: a scheme, then anything but the characters that no IRI may hold.
+# RFC 3987: a scheme, then any characters except those that no IRI may contain.
 _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\s<>\"{}|\\^`]*")
 
 

@@ -1,4 +1,4 @@
-"""``no-correct-place``: the scene states no workspace that is correct for an object of a clause that asks for it.
+"""``no-correct-place``: a clause asks for the correct place of an object, but the scene states none.
 
 A run leaves the clause unknown.
 """
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 CODE = "no-correct-place"
 Key = tuple[str, str]
 WORDS = ("is-correct-for", "are-sorted-correctly")
-"""The predicates that need the relation."""
+"""The predicates that ask for the correct place of an object."""
 PART = "correct"
 """Every phrase of these predicates contains this text."""
 
 
 def no_correct_place(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each such object once for each variant, at its first occurrence among the values."""
+    """Report each object without a correct place once for each variant, at its first occurrence among the values."""
     scope = snapshot.scope(file.document.uri)
     if scope.is_small and not any(PART in one.document.text for one in scope.files):
-        return  # Stories are only visited if something asks, since they can be many.
+        return  # Stories are visited only if the scope contains such a phrase, because there can be many.
     placed: frozenset[Key] | None = None
     for site in story_sites(snapshot, file):
         for scenario in scenarios(site):
@@ -76,7 +76,7 @@ def no_place(name: str) -> str:
 
 
 def _asked(scenario: Scenario) -> dict[str, tuple[Site, tree.Ref]]:
-    """Return the variables of the objects whose correct places clauses ask for, each with its first occurrence."""
+    """Return the variables for whose objects clauses ask for the correct place, each with its first occurrence."""
     found: dict[str, tuple[Site, tree.Ref]] = {}
     for site, clauses in ((scenario.template, scenario.outer), (scenario.site, scenario.clauses)):
         phrases = {phrase_words(word) for word in WORDS}
@@ -90,7 +90,7 @@ def _asked(scenario: Scenario) -> dict[str, tuple[Site, tree.Ref]]:
 
 
 def _placed(snapshot: Snapshot, file: FileAnalysis) -> frozenset[Key] | None:
-    """Return the objects for which a workspace is correct; ``None`` if they are not completely known."""
+    """Return the objects that have a correct workspace; ``None`` if they are not completely known."""
     found: set[Key] = set()
     for one in snapshot.closure(file.document.uri):
         for declared in one.declarations:
@@ -121,7 +121,7 @@ def _placed_by_graphs(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Key]:
 
 @kept_with_key
 def _stated(declaration: Declaration) -> tuple[tree.Link, ...]:
-    """Return what the workspaces of a declaration are correct for."""
+    """Return the objects, or sets of objects, for which the workspaces in a declaration are correct."""
     root = declaration.tree
     members = root.members if isinstance(root, tree.ElementSet) else ()
     return tuple(link for member in members for link in member.correct_for)

@@ -1,4 +1,4 @@
-"""``no-emitter``: a clause refers to an event that nothing in its scenario emits, so the clause stays unknown."""
+"""``no-emitter``: nothing in the scenario emits an event to which a clause refers, so the clause stays unknown."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ Key = tuple[str, str]
 class _Emitters:
     """The events that an execution of a template emits.
 
-    ``bound`` maps the events that delimit the scenario and its behaviours to their names. ``inner`` are the events of
-    the behaviours, by their names in the catalog; ``ambiguous`` are those that several behaviours of a When emit.
+    ``bound`` maps defined events, events in ``emits``, and events that delimit the scenario or a behaviour to their
+    names. ``inner`` are the catalog names of the behaviours' own events. ``ambiguous`` are the catalog names that
+    several behaviours of one When emit.
     """
 
     bound: dict[Key, str] = field(default_factory=dict[Key, str])
@@ -99,7 +100,7 @@ def _emitted_elsewhere(site: Site, template: tree.Template) -> Iterator[Diagnost
 
 
 def _keys_of(site: Site, node: tree.When | tree.During | None) -> Iterator[Key]:
-    """Yield the events that bound the behaviours of a When, or a duration, and those that behaviours state to emit."""
+    """Yield the events that start or end the durations in a node, and the events in the ``emits`` of its behaviours."""
     for inner in () if node is None else walk(node):
         match inner:
             case tree.During(start=start, end=end):

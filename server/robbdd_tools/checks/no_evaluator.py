@@ -75,7 +75,7 @@ def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
 
 
 def said_by(clause: FreeClause) -> tuple[Predicate, str] | None:
-    """Return the predicate whose phrase a clause's text says, and the phrase with the clause's values."""
+    """Return the catalog predicate whose phrase is the text of a clause, and the phrase with the clause's values."""
     if not isinstance(clause, tree.Fluent) or not isinstance(clause.predicate, tree.TextPredicate):
         return None
     values: dict[str, str] = {}
@@ -86,7 +86,7 @@ def said_by(clause: FreeClause) -> tuple[Predicate, str] | None:
             case tree.Quantity(text=text):
                 values[one.name.text] = text
             case _:
-                pass  # No slot of the phrases that a text may say takes a plain number or a string.
+                pass  # No phrase that may be written as a text has a slot for a plain number or a string.
     found = predicate_in_text(clause.predicate.template.value, values)
     if found is None:
         return None

@@ -54,7 +54,7 @@ def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def gaps_of(scene: Site) -> list[Gap]:
-    """Return a scene's elements that have no model; none if a model of the whole scene may contain them."""
+    """Return the elements of a scene that have no model. If a model of the whole scene may contain them, none."""
     if not isinstance(scene.tree, tree.Scene):
         return []
     unfit = [element for element in sorted(simulated_members(scene), key=lambda one: one.key) if not _fits(element)]
@@ -73,7 +73,7 @@ def gaps_of(scene: Site) -> list[Gap]:
 
 
 def scene_instances(scene: Site) -> Iterator[Site]:
-    """Yield the loaded executable scenes of a scene."""
+    """Yield the loaded scene instances (executable scenes) of a scene."""
     root, snapshot = scene.tree, scene.snapshot
     assert isinstance(root, tree.Scene)
     for uri in _scenex_files(snapshot):

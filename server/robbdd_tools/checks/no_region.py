@@ -53,7 +53,7 @@ def not_carried(scene: str, workspace: str) -> str:
 def _carried(scene: Site | None) -> frozenset[Key] | None:
     """Return the workspaces that objects of a scene carry; ``None`` if they are not completely known.
 
-    A workspace is carried, too, if one inside it is.
+    A workspace is also carried if a workspace inside it is carried.
     """
     root = None if scene is None else scene.tree
     if scene is None or not isinstance(root, tree.Scene) or not scene.whole(root):
@@ -74,10 +74,10 @@ def _carried(scene: Site | None) -> frozenset[Key] | None:
 
 
 def _compose(site: Site | None, above: frozenset[Key], carried: set[Key], around: dict[Key, set[Key]]) -> Key | None:
-    """Add the workspaces of a composition and of those nested in it: the ``carried`` ones, and those ``around`` each.
+    """Add the workspaces of a composition, even nested ones: to ``carried``, and to ``around`` their outer workspaces.
 
     Returns:
-        The workspace of the composition; ``None`` if it or a nested one is not completely known.
+        The workspace of the composition; ``None`` if the composition or a nested one is not completely known.
     """
     root = None if site is None else site.tree
     if site is None or not isinstance(root, tree.Composition) or not site.whole(root):

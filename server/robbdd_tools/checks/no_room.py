@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 CODE = "no-room"
 ELSEWHERE = ": place the scene in a .scenex, or leave some out"
-"""How to make room."""
+"""End of a message: the ways to make room."""
 Names = frozenset[str]
 
 
@@ -36,7 +36,7 @@ def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
             yield from _containers(scene)
-    # Only a file that knows this many agents can have such a scenario; a large scope is not searched for them.
+    # Only with so many agents in its scope can a file have such a scenario. In a large scope, they are not counted.
     scope = snapshot.scope(file.document.uri)
     if not scope.is_small or sum(len(one.names.of_kind.get(SymbolKind.AGENT, ())) for one in scope.nearest) > SIDES:
         for site in story_sites(snapshot, file):
@@ -61,7 +61,7 @@ def crowded(models: Mapping[str, ObjectModel]) -> Iterator[NoRoom]:
     tables = [name for name, model in models.items() if not model.free and not model.bystander]
     bystanders = [name for name, model in models.items() if model.bystander]
     standing = [name for name, model in models.items() if model.free and not model.graspable]
-    # With several tables, compositions assign objects to them; only a run checks the room.
+    # If there are several tables, compositions assign objects to them, and only a run checks the room.
     on_table = [(standing, tables[0] if tables else "the table")] if len(tables) < 2 else []
     groups = [(tables, "the room"), (bystanders, "the room"), *on_table]
     for names, where in groups:

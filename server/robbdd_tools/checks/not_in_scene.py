@@ -1,7 +1,7 @@
 """``not-in-scene``: the scene of a variant lacks a value, although it has other elements of the same kind.
 
-This is allowed; the element then belongs to the scene of that variant only. For example, a scene without any agent
-leaves the choice of agents to its variants on purpose.
+This is allowed: the element then belongs only to the scene of that variant. A scene without any agent is not reported,
+because it leaves the choice of agents to its variants on purpose.
 """
 
 from __future__ import annotations

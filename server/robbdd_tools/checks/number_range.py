@@ -51,7 +51,7 @@ class _Quantity:
 _FRICTION = _Quantity("a friction", low=setting_of("friction").low, high=setting_of("friction").high)
 _RATE = _Quantity("an update rate", above=True)
 USUAL_RATE = 100
-"""Update rate (Hz) that a fix writes, as in policies that quick fixes create."""
+"""A fix writes this update rate (Hz), as do the quick fixes that create policies."""
 _RATIO = _Quantity("a gear ratio", above=True)
 _PIXELS = _Quantity("a number of pixels", low=1.0, whole=True)
 _SPEED = _Quantity("a speed limit", above=True)
@@ -128,7 +128,7 @@ def _numbers(vector: tree.Vector) -> Iterator[tree.Number]:
 
 
 def _fixes(site: Site, number: tree.Number, quantity: _Quantity) -> tuple[Fix, ...]:
-    """Return the fix that removes the sign, else one that writes the usual number or removes an optional entry.
+    """Return the fix that removes the sign or, if there is none, writes the usual number or removes an optional entry.
 
     There are no other fixes, because the intended number is uncertain.
     """

@@ -57,7 +57,7 @@ def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes
 
 
 def _count(site: Site, sample: tree.Sample) -> int | None:
-    """Return the number of values in a sample; ``None`` if its distribution is unknown."""
+    """Return the number of values in a sample, or ``None`` if its distribution is unknown."""
     found = site.follow(sample.distribution)
     declared = None if found is None else found.tree
     return drawn(declared.law) if isinstance(declared, tree.Distribution) else None

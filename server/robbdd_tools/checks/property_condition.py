@@ -33,7 +33,7 @@ Selected = tuple[tree.Ref, tree.Where]
 
 
 def property_condition(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report the conditions in a file, each at most once."""
+    """Report faulty conditions in a file, each at most once."""
     if "where" not in file.document.text:
         return
     for placed in file.parts():
@@ -72,7 +72,7 @@ def _findings(site: Site, ref: tree.Ref, where: tree.Where) -> Iterator[Diagnost
     elements = elements_of(site.follow(ref))
     conditions = conditions_of(site.placed, where)
     if not elements or conditions is None:
-        return  # An empty set and an unknown name have findings of their own.
+        return  # Other rules report an empty set and an unknown name.
     everything = properties_by_element(site.snapshot, site.uri)
     known = [(element.name, everything.get(iri_of(site, element), {})) for element in elements]
     found = [
@@ -89,7 +89,7 @@ def _findings(site: Site, ref: tree.Ref, where: tree.Where) -> Iterator[Diagnost
 def _condition(
     site: Site, ref: tree.Ref, written: tree.PropertyCondition, condition: PropertyCondition, known: Known
 ) -> Iterator[Diagnostic]:
-    """Yield the finding on one condition: an unknown property, values of another kind, or elements without it."""
+    """Yield the finding on a condition: unknown property, values of another kind, or elements without the property."""
     name = condition.name
     values = [value for _, has in known for value in has.get(name, ())]
     if not values:
@@ -118,7 +118,7 @@ def _condition(
 
 
 def _values(site: Site, where: tree.Where, conditions: tuple[PropertyCondition, ...], known: Known) -> Iterator[Fix]:
-    """Yield fixes that write a similar word which elements have."""
+    """Yield fixes that replace a word by a similar one that some element has as its value."""
     for written, condition in zip(where.conditions, conditions, strict=True):
         words = {value.text for _, has in known for value in has.get(condition.name, ()) if value.kind == TEXT}
         near = similar(condition.value.text, sorted(words)) if condition.value.kind == TEXT else ()

@@ -1,4 +1,4 @@
-"""``property-value``: a property that is stated twice, in values of several kinds, or with a name that is not free."""
+"""``property-value``: a property is stated twice, has values of several kinds, or has the name of an element."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CODE = "property-value"
 
 
 def property_value(site: Site) -> Iterator[Diagnostic]:
-    """Report the properties in a set of elements; of each property only the first value of another kind."""
+    """Report faulty properties in a set of elements. Of values of another kind, only the first one is reported."""
     root = site.tree
     if isinstance(root, tree.ElementSet):
         names = frozenset(member.name.text for member in root.members)

@@ -34,7 +34,7 @@ _WITH_CODE = (tree.Implementation, tree.Observation, tree.Policy, tree.Behaviour
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A name of Python code that does not exist, with similar names. ``is_attribute`` if only the module exists."""
+    """A name of missing Python code, with similar names. ``is_attribute`` is true if only the module exists."""
 
     message: str
     choices: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""``quantity``: a predicate gets a quantity that measures something else."""
+"""``quantity``: a predicate gets a quantity of another dimension than it needs."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _values(scenario: Scenario) -> Iterator[Diagnostic]:
         uses = needed.get(variable_key(column.variable), ()) if column.variable is not None else ()
         for written in column.written if uses else ():
             for node, element in written_elements(scenario.site, written):
-                # Any other value is a conflict of types.
+                # For any other value, ``type-conflict`` is reported.
                 for site, ref, slot in uses if element.kind == "quantity" else ():
                     problem = _problem(element.name, slot)
                     if problem:
@@ -63,7 +63,7 @@ def _values(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Argument]]:
-    """Yield the slots for quantities in clauses, with what fills them."""
+    """Yield the slots for quantities in clauses, with the terms that fill them."""
     catalog = load_catalog()
     for phrase in clauses.phrases:
         word = catalog.predicates.get(phrase.word) or catalog.behaviours[phrase.word]

@@ -25,7 +25,7 @@ SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
 
 
 def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Iterator[tuple[str, Kinds]]:
-    """Yield the paths and kinds of those variables of a template that are not sets. Some uses determine the kinds."""
+    """Yield paths and kinds of a template's variables, except sets and variables whose kinds no use determines."""
     root = template.tree
     paths = (
         [f"{root.name.text}.{entry.name.text}" for entry in root.variables] if isinstance(root, tree.Template) else []
@@ -50,7 +50,7 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
 
 
 def similar_phrase(use: Use, clauses: Clauses, kinds: Kinds) -> str:
-    """Return a predicate's phrase that differs from that of a use by words at its end, and accepts ``kinds`` there.
+    """Return a predicate's phrase that accepts ``kinds`` and differs from the used phrase only in words at its end.
 
     Example: *does not collide* of an agent, and *does not collide with* of an object. Empty if there is none.
     """

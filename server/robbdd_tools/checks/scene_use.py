@@ -25,8 +25,8 @@ _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 def used_elements(scene: Site) -> frozenset[Key] | None:
     """Return the elements of a scene that its loaded scenarios use.
 
-    Objects that carry a used workspace are included. Without a scenario, the use is unknown, and the result is
-    ``None``.
+    Objects that carry a used workspace are included. If the scene has no scenario, the use is unknown, and the result
+    is ``None``.
     """
     found: set[Key] = set()
     is_used = False

@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
 CODE = "setting"
 _SHARED = frozenset({"position_range", "seed"})
-"""Configurations that both agents and objects have."""
+"""Configurations that agents and objects have in common."""
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 MISSPELT = 0.8
-"""Minimum similarity of a misspelt name."""
+"""Minimum similarity from which a name counts as misspelt."""
 MAX_ALIKE = 5
 """Maximum number of suggestions."""
 _WORD = re.compile(r"[a-z]{4,}")
@@ -91,7 +91,8 @@ def unknown_setting(name: str) -> tuple[str, list[str]]:
 def _similar(name: str) -> list[str]:
     """Return the configurations that a name resembles.
 
-    These are the ones with a word of the name, as ``ee_speed`` has of ``speed``, and those that it may misspell.
+    These are the configurations that share a word with the name (as ``ee_speed`` does with ``speed``), and those of
+    which the name may be a misspelling.
     """
     words = set(_WORD.findall(name.lower()))
     shares = {one: bool(words & set(_WORD.findall(one))) for one in SETTINGS}
@@ -102,7 +103,7 @@ def _similar(name: str) -> list[str]:
 
 
 def _stated(site: Site, use: _Use) -> Iterator[Diagnostic]:
-    """Yield the invalid value of a clause, and its element if that does not have the configuration."""
+    """Report the value of a clause if it is invalid, and the element if it does not have the configuration."""
     if not isinstance(use.value, tree.Ref):
         try:
             setting_of(use.name.text).read(str(use.value.value))
@@ -146,7 +147,7 @@ def _known_uses(scenario: Scenario) -> Iterator[tuple[Site, _Use]]:
 
 
 def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Yield the target elements in a variation that do not have the configuration."""
+    """Report the elements in a variation that clauses configure but that do not have the configuration."""
     targets: dict[str, list[tuple[Site, tree.Name]]] = {}
     for site, use in _known_uses(scenario):
         variable = site.target(use.target)
@@ -199,9 +200,9 @@ def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, 
 
 
 def _texts(site: Site, written: Written, is_set: bool) -> Iterator[tuple[tree.Node, str]]:
-    """Yield each value as a run reads it.
+    """Yield each value in the form in which a run reads it.
 
-    For a set variable, the elements of the set are one value of several numbers.
+    For a set variable, the elements of the set together are one value that consists of several numbers.
     """
     if isinstance(written, tree.SetList):
         for values in written.sets:

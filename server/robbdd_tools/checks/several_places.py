@@ -1,6 +1,6 @@
 """``several-places``: an object should be located at each of several places that have nothing in common.
 
-A set of places in ``is located at`` means each of them, like every other set; users often mean one of them.
+Like every other set, a set of places in ``is located at`` means each of its elements. Users often mean one of them.
 """
 
 from __future__ import annotations
@@ -82,8 +82,8 @@ def have_nothing_in_common(
 ) -> bool:
     """Return whether two workspaces are certainly apart.
 
-    They are not if one contains the other or if the same object carries both. ``carriers`` maps a workspace to its
-    objects, ``inner`` to the workspaces directly inside it.
+    They are not apart if one contains the other or if the same object carries both. ``carriers`` maps a workspace to
+    its objects, and ``inner`` maps it to the workspaces directly inside it.
     """
     if one == other or carriers.get(one, frozenset()) & carriers.get(other, frozenset()):
         return False
@@ -112,12 +112,12 @@ _Place = tuple[str, tree.Ref]
 
 @kept_with_key
 def _known_places(_: Resolution) -> list[tuple[_Place, ...]]:
-    """Return the places in the clauses of a declaration, once they have been found."""
+    """Return a list that caches the places in the clauses of a declaration. It is empty until they have been found."""
     return []
 
 
 def _set_places(snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration) -> tuple[_Place, ...]:
-    # The kinds of variables cannot change without another resolution.
+    # The kinds of variables cannot change while the resolution stays the same.
     known = _known_places(placed.targets.resolution)
     if not known:
         known.append(tuple(_found_places(Site(snapshot, file, placed))))
@@ -132,7 +132,7 @@ def _found_places(site: Site) -> Iterator[_Place]:
             if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
                 variable = site.target(place)
                 is_set = variable is not None and variable.kind is SymbolKind.SET_VARIABLE
-                # Clauses are walked only where it matters.
+                # The clauses are walked only if the place is a set.
                 if is_set and phrase not in set(_lenient(clauses.node)):
                     yield thing.path, place
 
@@ -170,7 +170,7 @@ def _apart(scenario: Scenario, variable: str) -> tuple[tree.Node, str, str] | No
 
 
 def _sets(site: Site, written: Iterable[Written]) -> Iterator[tuple[tree.Node, list[Element]]]:
-    """Yield the values of a set variable; of a selection, all elements of its set."""
+    """Yield the values of a set variable. For a selection of several elements, yield its whole set."""
     for value in written:
         if isinstance(value, tree.SetList):
             yield from _sets(site, value.sets)
@@ -181,7 +181,7 @@ def _sets(site: Site, written: Iterable[Written]) -> Iterator[tuple[tree.Node, l
 def _contents(
     site: Site | None, carriers: dict[Key, set[Key]], inner: dict[Key, set[Key]], seen: set[tuple[str, int]]
 ) -> None:
-    """Collect what the compositions of a scene, or of a composition, contain."""
+    """Collect the contents of the compositions in a scene or in a composition."""
     root = None if site is None else site.tree
     if site is None or not isinstance(root, tree.Scene | tree.Composition) or (site.uri, site.placed.offset) in seen:
         return

@@ -1,4 +1,4 @@
-"""``single-element``: a behaviour gets a set where it needs one element. Only a place may be a set."""
+"""``single-element``: a behaviour gets a set in a slot for one element. Only a slot for a place accepts a set."""
 
 from __future__ import annotations
 

@@ -31,13 +31,13 @@ SUPERSEDED = {
         "shacl-horizon-number",
     ),
 }
-"""Code of a rule → codes of the shapes that report the same mistake, besides those of quantities."""
+"""Code of a rule → codes of the shapes, other than those of quantities, that report the same mistake."""
 
 
 def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the shape findings without those at places where a rule already reports the same mistake.
 
-    Findings that no rule reports stay, so nothing is lost where shapes and rules differ.
+    All other findings stay, so no mistake is lost where shapes and rules differ.
     """
     reported: dict[tuple[str, str], list[Span]] = {}
     for finding in fast:
@@ -49,7 +49,7 @@ def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic])
 
 @cache
 def role_shapes() -> frozenset[str]:
-    """Return the codes of the shapes that report values of another kind than the clauses of their variable require."""
+    """Return the codes of the shapes that report values of a kind that the clauses of their variable do not accept."""
     return frozenset((*SUPERSEDED["type-conflict"], *_quantity_shapes("type-conflict")))
 
 

@@ -1,4 +1,4 @@
-"""Edits of the table of a variation: its columns, and cells with their contents."""
+"""Edit the table of a variation: add and remove columns, and find the contents of cells."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _header_end(site: Site, table: tree.Table) -> int | None:
 
 
 def _rule(site: Site, header: int, columns: int) -> Span | None:
-    """Return the rule under a header if it has as many cells."""
+    """Return the line of dashes under a header if it has as many cells as the header."""
     match = _RULE.match(site.file.document.text, header)
     return Span(*match.span(1)) if match is not None and match[1].count("|") == columns + 1 else None
 

@@ -1,4 +1,4 @@
-"""Count facts of the declarations of files. After an edit, only those of changed declarations are counted again."""
+"""Count facts of the declarations of files. After an edit, only the facts of changed declarations are counted again."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Counts(Generic[Fact]):
-    """How often each fact occurs in a file. They stay the same object while no fact is added or removed."""
+    """How often each fact occurs in a file. The counts stay the same object while no fact is added or removed."""
 
     by_fact: Mapping[Fact, int]
 
@@ -33,7 +33,7 @@ class _Counted(Generic[Fact]):
 
 
 class Tally(Generic[Fact]):
-    """The counts of one kind of facts. ``facts`` returns those of a declaration that has no parts."""
+    """The counts of one kind of facts. ``facts`` returns the facts of a declaration that has no parts."""
 
     def __init__(self, facts: Callable[[Declaration], Iterable[Fact]]) -> None:
         self._facts = facts

@@ -61,12 +61,12 @@ class Scenario:
         return sorted((member for member in found if member.kind in kinds), key=lambda member: member.key)
 
     def fitting_for(self, variable: Definition) -> list[str]:
-        """Return the values in the scene that the phrases of a template variable accept."""
+        """Return the values in the scene that all phrases with a template variable accept."""
         kinds = variable_type(self.site.snapshot, variable, from_values=False).kinds & ELEMENTS
         return [f"<{member.name}>" for member in self.members(kinds)]
 
     def cell_for(self, variable: Definition) -> str | None:
-        """Return a cell with the first matching value of the scene. For a set variable, it has all matching values."""
+        """Return a cell with the first matching value of the scene or, for a set variable, with all matching values."""
         values = self.fitting_for(variable)
         if not values:
             return None

@@ -31,7 +31,7 @@ Placed = tuple[Site, Use]
 
 
 def type_conflict(site: Site) -> Iterator[Diagnostic]:
-    """Report phrases and values that use one variable for different kinds. Both places are reported."""
+    """Report phrases and values that use one variable for different kinds. The report names both places."""
     for clauses in clauses_of(site.placed.declaration):
         yield from _quantified(site, clauses)
         if isinstance(clauses.node, tree.Template):
@@ -93,7 +93,7 @@ def _between_phrases(
 
 
 def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Iterator[Diagnostic]:
-    """Return a link from the phrase that determines the type to the contradicting place, if both are in one file."""
+    """Yield a hint at the phrase that determines the type, linked to the conflicting place, if both are in one file."""
     site, use = other
     if site.uri == own.uri:
         message = f"'{use.ref.path}' is {article(kind_words(use.kinds))} here, but {words}"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report unused imports as hints. Libraries and imported files are skipped, because others use their imports."""
+    """Report unused imports as hints. Libraries and imported files are skipped: other files use their imports."""
     if not has_story(file):
         return
     used = used_names(snapshot, file.document.uri)
@@ -33,7 +33,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
 def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: Set[str]) -> bool:
     """Return whether a file uses no name of an import. This is uncertain if the imported file has an error.
 
-    A graph is imported for its statements, not for names.
+    The import of a graph is never unused, because it provides statements instead of names.
     """
     scope = snapshot.scope(link.uri)
     if scope.unread or graph_format(link.uri):

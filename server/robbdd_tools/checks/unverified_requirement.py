@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def unverified_requirement(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each requirement that no scenario verifies, in a file with scenarios or imported by such a file."""
+    """Report each unverified requirement in a file that has scenarios or that a file with scenarios imports."""
     requirements = requirements_of(file)
     if not requirements:
         return

@@ -33,7 +33,7 @@ def has_story(file: FileAnalysis) -> bool:
 def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind) -> Iterator[Definition]:
     """Yield the top-level declarations of a kind that neither the file nor the files that import it use.
 
-    A file without scenarios has none, because it is a library.
+    In a file without scenarios, no declaration is unused, because the file is a library.
     """
     if not has_story(file):
         return

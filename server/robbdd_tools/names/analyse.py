@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 class Definitions(Mapping[str, Definition]):
-    """The declarations of a file itself, by qualified name; only the first declaration of each name.
+    """The first declaration of each qualified name in a file itself.
 
-    They are made when they are accessed.
+    Definitions are made when they are accessed.
     """
 
     def __init__(self, scope: Scope) -> None:
@@ -37,7 +37,7 @@ class Definitions(Mapping[str, Definition]):
         return path in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Yield the names in text order, whatever edits preceded."""
+        """Yield the names in text order, regardless of earlier edits."""
         return iter(sorted(self._names, key=lambda path: self._names[path][0].place))
 
     def __len__(self) -> int:

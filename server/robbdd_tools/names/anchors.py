@@ -1,4 +1,4 @@
-"""Diagnostics whose positions are relative to declarations, so that they stay valid when the declarations move."""
+"""Store the positions in diagnostics relative to declarations, so that they stay valid when the declarations move."""
 
 from __future__ import annotations
 

@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 FOR_ALL = "for all"
-"""Name of a loop; no name in a text contains a space."""
+"""Name of a loop. It contains a space, so no name in a text is equal to it."""
 MAX_NESTED = 100
-"""Maximum nesting depth; deeper clauses are in no graph."""
+"""Maximum nesting depth of clauses. Graphs do not contain deeper ones."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedClause:
-    """A clause, a group of clauses or a quantifier: its whole absolute span, and its name or, without one, its kind.
+    """A clause, a group of clauses or a quantifier: its whole absolute span, and its name or, if it has none, its kind.
 
-    ``head`` is the part where its result is shown: for the behaviour of a ``When``, its first words up to the name.
+    The result is shown at ``head``. For the behaviour of a ``When``, these are the first words up to the name.
     """
 
     iri: str

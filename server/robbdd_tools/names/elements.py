@@ -146,7 +146,7 @@ def scene_members(site: Site | None) -> frozenset[Element] | None:
 def simulated_members(site: Site) -> frozenset[Element]:
     """Return the elements of a scene that a simulation places: its members, and the objects of nested compositions.
 
-    A workspace needs the objects that carry it, at any depth. Empty if the members are not completely known.
+    A workspace needs the objects that carry it, at any depth. The result is empty if some members are unknown.
     """
     members = scene_members(site)
     if members is None or not isinstance(site.tree, tree.Scene):

@@ -1,4 +1,4 @@
-"""Imports whose upper and lower case letters differ from those of the file's name."""
+"""Find imports that differ from the name of the file in upper and lower case."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SEPARATORS = re.compile(r"[/:]")
 
 
 def wrong_case(link: ImportPath, spellings: Spellings) -> str | None:
-    """Return a message if an import names an existing file with other upper and lower case; ``None`` if it does not."""
+    """Return a message if an import differs from the name of an existing file only in case; otherwise ``None``."""
     written = _names(link.text)
     stored = spellings.stored(link.written, len(written)) if written else None
     if stored is None:
@@ -23,7 +23,7 @@ def wrong_case(link: ImportPath, spellings: Spellings) -> str | None:
 
 
 def _names(path: str) -> list[str]:
-    """Return the names at the end of an import's path, without what leads to other folders."""
+    """Return the names at the end of an import's path, after the steps to other folders."""
     found: list[str] = []
     for name in reversed(_SEPARATORS.split(path)):
         if name in ("..", ""):

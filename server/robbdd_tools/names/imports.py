@@ -24,11 +24,11 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
 }
 """The kinds of model file that each kind may import."""
 _ENRICHED = frozenset({"scene", "bdd", "scenex"})
-"""The kinds of file that may import graphs, which add properties to what is declared elsewhere."""
+"""The kinds of file that may import graphs. Such a graph adds properties to elements that are declared elsewhere."""
 BACKSLASH = "\\"
 _PACKAGE = "package:"
 _ADDRESS = "address:"
-# URLs, and network paths of Windows and URLs.
+# URLs, and network paths in the notation of Windows or of URLs.
 _ADDRESSES = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://|file:|//|\\\\")
 
 
@@ -44,7 +44,7 @@ def import_uri(importer: str, path: str) -> str:
     if drive is not None:
         return drive
     package, colon, inside = path.partition(":")
-    # A package's code must not run: only its path is looked up. A single letter is a drive, which POSIX does not have.
+    # Only the package's path is looked up, because its code must not run. A single letter is a drive, not a package.
     if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
         return urljoin(importer, quote(path, errors="surrogatepass"))
     folder = _package_folder(package)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class ImportPath:
     """The path of an import as written. ``span`` is absolute and excludes the quotes.
 
-    ``written`` is the URI of the path. ``uri`` is the URI that stands for the imported file, see ``Spellings``.
+    ``written`` is the URI of the path. ``uri`` is the URI that represents the imported file (see ``Spellings``).
     """
 
     span: Span
@@ -69,7 +69,7 @@ class FileIndex:
 def language_of(uri: str) -> str:
     """Return the language of a file according to its extension; ``""`` for other files.
 
-    ``study`` is the language of studies, which declare nothing: of them, the index has the imports only.
+    ``study`` is the language of studies. They declare nothing, so their index contains only imports.
     """
     ending = PurePosixPath(uri).suffix.removeprefix(".").lower()
     return ending if ending in LANGUAGES or ending == STUDY else ""
@@ -106,7 +106,7 @@ def imports_of(document: Document) -> tuple[ImportPath, ...]:
     return _imports(document, (Placed(parse_declaration(language, chunk.text), chunk.offset) for chunk in chunks))
 
 
-# Other escapes are of quotes and backslashes only.
+# All other escapes are of quotes and backslashes.
 _WINDOWS_PATH = re.compile(r"\\[^\\\"']")
 
 
@@ -125,8 +125,8 @@ def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[Import
         if isinstance(placed.declaration.tree, tree.Import):
             path = placed.declaration.tree.path
             span = Span(path.span.start + 1, path.span.end - 1).shifted(placed.offset)
-            # A backslash escapes in a string, so the value lacks the ones between Windows folders: use the written
-            # text.
+            # In a string, a backslash is an escape, so the value lacks the backslashes of a Windows path. Use the
+            # written text.
             written = document.text[span.start : span.end]
             meant = written if _WINDOWS_PATH.search(written) and BACKSLASH not in path.value else path.value
             uri = import_uri(document.uri, meant)

@@ -5,7 +5,7 @@
 - A clause of a variant may be named without its user story.
 - An element of a scene may be named by the scene (``lab_scene.cube``).
 
-All these names are declared under another path, which this module finds.
+All these names are declared under another path. This module finds that path.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ELEMENT_ROLES = frozenset({"Element", "Object", "Workspace", "Agent"})
 ROLES = ELEMENT_ROLES | {"Frame", "Body", "Joint", "Tree", "Fluent"}
 """Roles of references that may resolve through another name."""
 MAX_PATHS = 50
-"""Maximum number of paths tried for one reference: trees that contain one another must not loop for ever."""
+"""Maximum number of paths tried for one reference, because trees may contain one another."""
 _PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
 
 

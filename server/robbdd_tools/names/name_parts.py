@@ -37,7 +37,7 @@ def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference:
 
 
 def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
-    """Return what the first of some qualified names means, by itself or through another name; ``None`` if nothing."""
+    """Return the definition of the first qualified name that has one, directly or through another name, if any."""
     for path in (*paths, *paths_through(scope.standing_for, paths)):
         for file, declared in scope.find(path):
             return scope.define(file, declared)

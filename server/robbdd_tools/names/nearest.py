@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def nearest(scope: Scope, reference: Reference, kinds: tuple[SymbolKind, ...]) -> tuple[tuple[str, ...], bool]:
-    """Return the names nearest to a reference, and whether there is any: as ``closest``, but also through instances.
+    """Return the same as ``closest`` for a reference, but consider also names that resolve through another name.
 
-    Of a large scope only the nearest files are searched.
+    In a large scope, only the nearest files are searched.
     """
     path = reference.ref.path
     tables = tuple(file.names for file in scope.nearest)

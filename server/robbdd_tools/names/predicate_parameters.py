@@ -1,4 +1,4 @@
-"""Kinds of the parameters of named predicates, inferred from their definitions."""
+"""Infer the kinds of the parameters of named predicates from the definitions of these predicates."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 @dataclass(slots=True)
 class Taken:
-    """Kinds that a parameter takes, dimensions of its quantities, and whether slots take a set as a whole."""
+    """Kinds and dimensions of quantities that a parameter accepts, and whether its slots accept a set as a whole."""
 
     kinds: Kinds = ANYTHING
     dimensions: set[str] = field(default_factory=set[str])
@@ -39,13 +39,13 @@ def predicate_of(site: Site, use: tree.NamedUse) -> tuple[Site, tree.NamedPredic
 
 
 def predicate_at(site: Site, definition: Definition) -> tree.NamedPredicate | None:
-    """Return the named predicate that declares a name: its own, or that of a parameter."""
+    """Return the named predicate that declares a name. The name is its own or that of one of its parameters."""
     found = site_of(site.snapshot, definition)
     return found.tree if found is not None and isinstance(found.tree, tree.NamedPredicate) else None
 
 
 def taken_by(site: Site, predicate: tree.NamedPredicate, inside: tuple[str, ...] = ()) -> Mapping[str, Taken]:
-    """Return what each parameter of a predicate takes. ``inside`` are the predicates that use it."""
+    """Return what each parameter of a predicate accepts. ``inside`` are the predicates that use this predicate."""
     found = {parameter.name.text: Taken() for parameter in predicate.parameters}
     key = _key(site, predicate)
     for ref, given in () if key in inside else _filled(site, predicate, (*inside, key)):
@@ -59,7 +59,7 @@ def taken_by(site: Site, predicate: tree.NamedPredicate, inside: tuple[str, ...]
 
 
 def _filled(site: Site, predicate: tree.NamedPredicate, inside: tuple[str, ...]) -> Iterator[tuple[tree.Ref, Taken]]:
-    """Yield the references in a definition, each with what its place takes."""
+    """Yield the references in a definition, each with the values that its place accepts."""
     for node in walk(predicate.body):
         if isinstance(node, tree.PhraseUse):
             slots = {slot.name: slot for slot in load_catalog().predicates[node.word].slots}
@@ -77,7 +77,7 @@ def _filled(site: Site, predicate: tree.NamedPredicate, inside: tuple[str, ...])
 
 
 def leads_back(site: Site, predicate: tree.NamedPredicate, use: tree.NamedUse) -> bool:
-    """Return whether the predicate of a phrase is defined, directly or indirectly, by another one."""
+    """Return whether a phrase's predicate is ``predicate``, or its definition uses that one, directly or indirectly."""
     goal, seen = _key(site, predicate), set[str]()
     waiting = [predicate_of(site, use)]
     while waiting:

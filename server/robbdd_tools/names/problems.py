@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each unresolved reference in a declaration, which is at ``offset``."""
+    """Yield a diagnostic for each unresolved reference in the declaration at ``offset``."""
     for problem in resolution.unresolved:
         if problem.other is not None:
             yield _wrong_kind(scope, problem, offset)
@@ -52,14 +52,14 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
 
 
 def _removed(file: FileIndex, first: Declared, other: Declared) -> Iterator[Fix]:
-    """Yield a fix that removes the second declaration of a variable. Under another name, it would lack values."""
+    """Yield a fix that removes the second declaration of a variable. A renamed variable would lack values."""
     if first.symbol.kind is other.symbol.kind and other.symbol.span != other.symbol.extent:
         extent = other.symbol.extent.shifted(other.offset)
         yield removal(file.document, f"Remove the second declaration of '{other.symbol.name}'", extent)
 
 
 def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
-    """Yield a fix that renames the second declaration. References by this name denote the first declaration."""
+    """Yield a fix that renames the second declaration. References still denote the first one."""
     name = path.rpartition(".")[2]
     free = free_name(name, file.names.entries)
     if file.document.text[place.start : place.end] == name:
@@ -79,7 +79,7 @@ def _same_variable(first: Declared, second: Declared) -> bool:
 
 
 def _could_be_unread(scope: Scope, reference: Reference) -> bool:
-    """Return whether an import that cannot be read may declare the name. Then the error of the import is sufficient."""
+    """Return whether an unreadable import may declare the name. In this case, the error of the import is sufficient."""
     kinds = ROLE_KINDS[reference.ref.role]
     return any(may_declare(language_of(uri), kinds) for uri in scope.unread)
 

@@ -20,14 +20,14 @@ from robbdd_tools.names.reachability import Reachability, Source
 from robbdd_tools.names.scope import Scope
 
 MAX_RELATED = 20
-"""Maximum number of errors in imported files that are related places of one import."""
+"""Maximum number of errors in imported files that are linked from one import."""
 
 
 @dataclass
 class Project:
     """Open documents, and files on disk. After every change, the next snapshot is a new revision.
 
-    A file that is named by several spellings of its URI is one file. The spelling of an open document stands for it.
+    Several spellings of a URI can name one file. The spelling of an open document represents the file.
     """
 
     revision: int = 0
@@ -113,7 +113,7 @@ class Project:
         return Snapshot(self.revision, sources, self._analyses, dict(self._joined), self.spellings)
 
     def _linked(self, uri: str, source: Source) -> Source:
-        """Return a file with its imports leading to the URIs that stand for the imported files."""
+        """Return a file whose imports lead to the URIs that represent the imported files."""
         of = self.spellings.of
         if isinstance(source, Unreadable) or all(of(link.written) == link.uri for link in source.imports):
             return source
@@ -139,7 +139,7 @@ class Snapshot:
     sources: Mapping[str, Source]
     _analyses: dict[str, Resolved]
     joined: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """Graph files that are parts of another one, by the URI of that one."""
+    """URI of a graph file → the other graph files that are its parts."""
     spellings: Spellings = field(default_factory=Spellings)
 
     @cached_property
@@ -200,7 +200,7 @@ class Snapshot:
 
     @cached_property
     def _importers(self) -> dict[str, Sequence[str]]:
-        """The files of each cycle of imports and those that import them, by the first file of the cycle."""
+        """First file of an import cycle → the files of the cycle and the files that import them."""
         return {}
 
     def is_imported(self, uri: str) -> bool:
@@ -224,7 +224,7 @@ class Snapshot:
 
     @cached_property
     def _faults_of_cycles(self) -> dict[int, Sequence[Related]]:
-        """The faults that the files of a large cycle of imports reach; they are the same for all of them."""
+        """Number of a large import cycle → the faults that its files reach. All its files reach the same faults."""
         return {}
 
     @cached_property
@@ -294,7 +294,7 @@ class Snapshot:
         return found
 
     def _faults_behind(self, uri: str) -> Sequence[Related]:
-        """Return the faults of a file and all its imports."""
+        """Return the faults of a file and of all its imports."""
         if uri not in self._leading_to_faults:
             return ()
         scope = self.scope(uri)

@@ -1,7 +1,7 @@
 """The import graph of a snapshot and an index of the names that its files declare, computed once for all files.
 
-Files that import each other reach the same files, so the files that a file reaches depend on its strongly connected
-component only: one bit for each component.
+A file *reaches* itself and everything that it imports, directly or indirectly. Files that import each other reach the
+same files, so reachability is stored for each strongly connected component, with one bit for each other component.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ Source = FileIndex | Unreadable
 
 
 class Reachability:
-    """The imports among the files of one snapshot; all of it is computed when it is first asked for."""
+    """The imports among the files of one snapshot. Everything is computed at the first access."""
 
     def __init__(self, sources: Mapping[str, Source]) -> None:
         self.sources = sources
 
     @cached_property
     def cycles(self) -> Mapping[str, int]:
-        """A number for each file, equal for files that import each other, directly or not."""
+        """URI of a file → a number. Files that import each other, directly or indirectly, have the same number."""
         return components({uri: _imports(source) for uri, source in self.sources.items()})
 
     def cycle(self, uri: str) -> tuple[str, ...]:
-        """Return a file and those that import it and are imported by it, directly or not, in alphabetical order."""
+        """Return a file and all files that import it and are imported by it, even indirectly, in alphabetical order."""
         return self.members[self.cycles[uri]] if uri in self.cycles else (uri,)
 
     @cached_property
     def members(self) -> Mapping[int, tuple[str, ...]]:
-        """The files of each number of ``cycles``, in alphabetical order."""
+        """Number in ``cycles`` → its files in alphabetical order."""
         found: dict[int, list[str]] = {}
         for uri, number in self.cycles.items():
             found.setdefault(number, []).append(uri)
@@ -45,7 +45,7 @@ class Reachability:
 
     @cached_property
     def _reached(self) -> Mapping[int, int]:
-        """For each number of ``cycles`` the components that it reaches, one bit each."""
+        """Number in ``cycles`` → the components that its files reach, with one bit for each."""
         bits = {number: 1 << position for position, number in enumerate(self.members)}
         found: dict[int, int] = {}
         # Components are found before those that lead to them.
@@ -63,7 +63,7 @@ class Reachability:
         return {number: position for position, number in enumerate(self.members)}
 
     def reaches(self, one: str, other: str) -> bool:
-        """Return whether a file is another one or imports it, directly or not."""
+        """Return whether two files are the same, or the first one imports the other one, directly or indirectly."""
         if one not in self.cycles or other not in self.cycles:
             return one == other
         return bool(self._reached[self.cycles[one]] >> self._bits[self.cycles[other]] & 1)
@@ -83,9 +83,9 @@ class Reachability:
         return WeakKeyDictionary()
 
     def changed_names(self, uri: str, before: Reachability) -> frozenset[str] | None:
-        """Return the names that a file reaches and that differ in an earlier snapshot; ``None`` if imports differ.
+        """Return the names in all reached files that differ in an earlier snapshot; ``None`` if imports differ.
 
-        They are found once for all files that import each other.
+        The names are found once for all files that import each other.
         """
         first, known = self.cycle(uri)[0], self._changed.setdefault(before, {})
         if first not in known:
@@ -97,12 +97,12 @@ class Reachability:
         return WeakKeyDictionary()
 
     def _read(self, uri: str) -> dict[str, FileIndex | None]:
-        """Return the files that a file reaches, ``None`` for those that cannot be read."""
+        """Return the files that a file reaches, by URI. The value is ``None`` for a file that cannot be read."""
         found = ((other, self.sources.get(other)) for other in self.walk(uri))
         return {other: source if isinstance(source, FileIndex) else None for other, source in found}
 
     def walk(self, uri: str) -> Iterator[str]:
-        """Yield a file and those that it imports, directly or not, breadth first."""
+        """Yield a file and all files that it imports, directly or indirectly, breadth first."""
         waiting, seen = [uri], {uri}
         for current in waiting:
             yield current
@@ -111,7 +111,7 @@ class Reachability:
             seen.update(fresh)
 
     def unread(self, uri: str) -> tuple[str, ...]:
-        """Return the imports of a file, directly or not, that cannot be read."""
+        """Return the direct and indirect imports of a file that cannot be read."""
         return tuple(other for other in self._unread if self.reaches(uri, other))
 
     @cached_property
@@ -120,7 +120,7 @@ class Reachability:
 
     @cached_property
     def declaring(self) -> Mapping[str, list[str]]:
-        """The files that declare a qualified name."""
+        """Qualified name → the files that declare it."""
         found: dict[str, list[str]] = {}
         for uri, source in self.sources.items():
             for path in source.names.entries if isinstance(source, FileIndex) else ():
@@ -129,7 +129,7 @@ class Reachability:
 
     @cached_property
     def declaring_as(self) -> Mapping[tuple[str, SymbolKind], list[str]]:
-        """The files that declare a qualified name as a certain kind."""
+        """Qualified name and kind → the files that declare the name as this kind."""
         found: dict[tuple[str, SymbolKind], list[str]] = {}
         for path, uris in self.declaring.items():
             for uri in uris:
@@ -140,7 +140,7 @@ class Reachability:
 
     @cached_property
     def standing_for(self) -> Mapping[str, list[str]]:
-        """The files in which a name stands for others, see ``indirect_names``."""
+        """Alias → the files that define it (see ``indirect_names``)."""
         found: dict[str, list[str]] = {}
         for uri, source in self.sources.items():
             for name in targets_in(source) if isinstance(source, FileIndex) else ():

@@ -24,15 +24,16 @@ if TYPE_CHECKING:
 Key = tuple[str, str]
 """The document and the qualified name of a definition."""
 _Named = dict[Key, "dict[str, PlacedClause] | None"]
-"""Requirements, with the clauses that name them; ``None`` if a declaration names the requirement by itself."""
+"""Requirements, each with the clauses that name it; ``None`` if a whole declaration names the requirement."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
     """A scenario variant that verifies a requirement.
 
-    ``clauses`` are the clauses that verify it, by IRI: those that name it (in a group, the group) or, if ``whole``, all
-    clauses under ``Then`` of a scenario that names it by itself, by its story or by its template.
+    ``clauses`` are the IRIs of the clauses that verify it. These are the clauses that name the requirement (or the
+    groups around them). If ``whole`` is true, they are all ``Then`` clauses, because the scenario itself, its story or
+    its template names the requirement.
     """
 
     variant: PlacedVariant
@@ -57,7 +58,7 @@ def requirements_of(file: FileAnalysis) -> list[Definition]:
 
 
 def verifiers(snapshot: Snapshot, requirements: Sequence[Definition]) -> dict[Key, list[Verifier]]:
-    """Return the scenarios that verify each of some requirements of one file, in the order of their files and text."""
+    """Return the scenarios that verify each requirement, sorted by file and text. All requirements are in one file."""
     found: dict[Key, list[Verifier]] = {key_of(one): [] for one in requirements}
     uris = {one.uri for one in requirements}
     files = sorted(uris.union(*(snapshot.importers(uri) for uri in uris)))
@@ -135,7 +136,7 @@ class _Links:
 
 @dataclass
 class _Places:
-    """The clauses of a file. They are found when the first reference to a requirement is."""
+    """The clauses of a file. They are searched only when the first reference to a requirement is found."""
 
     snapshot: Snapshot
     uri: str
@@ -145,7 +146,7 @@ class _Places:
         return list(clauses_in(self.snapshot, self.uri))
 
     def clause(self, span: Span) -> PlacedClause | None:
-        """Return the clause that contains a reference; ``None`` for a reference of a whole declaration.
+        """Return the clause that contains a reference; ``None`` if the reference belongs to a whole declaration.
 
         A part of a negation or of a group is not judged by itself, so the outermost clause inside a loop is returned.
         """
@@ -155,7 +156,7 @@ class _Places:
 
 
 def _then_of(root: tree.ChunkTree | None, name: str) -> Iterator[tree.Expression]:
-    """Yield what is under ``Then`` in a template, or in the variant of a story that has the given name."""
+    """Yield the ``Then`` clauses of a template, or of the variant of a story that has the given name."""
     match root:
         case tree.Template():
             yield from _then_in(root.body)

@@ -35,7 +35,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Unresolved:
-    """A reference without a matching target. ``other`` is a declaration of the same name that has another kind."""
+    """A reference without a matching target. ``other`` is a declaration of the same name and of another kind."""
 
     reference: Reference
     other: Target | None

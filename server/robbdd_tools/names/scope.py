@@ -42,7 +42,7 @@ class Scope:
             return False
         if self.is_small or other.is_small:
             return self.files == other.files and self.unread == other.unread
-        # The files themselves determine the order in which they are found.
+        # The files determine their order, so it need not be compared.
         return self._reachability.reaches_same(self.own.document.uri, other._reachability)
 
     def walk(self) -> Iterator[FileIndex]:
@@ -55,18 +55,18 @@ class Scope:
 
     @cached_property
     def nearest(self) -> tuple[FileIndex, ...]:
-        """The first files, ``MAX_SEARCHED`` at most."""
+        """The nearest files, at most ``MAX_SEARCHED``."""
         return tuple(islice(self.walk(), MAX_SEARCHED))
 
     @cached_property
     def is_small(self) -> bool:
-        """Whether ``nearest`` are all files."""
+        """Whether ``nearest`` contains all files."""
         cycle = self._reachability.cycle(self.own.document.uri)
         return len(cycle) <= MAX_SEARCHED and next(islice(self.walk(), MAX_SEARCHED, None), None) is None
 
     @cached_property
     def files(self) -> tuple[FileIndex, ...]:
-        """All files. In a large cycle of imports each file has as many: ask for names instead."""
+        """All files. In a large cycle of imports, each file has a scope of this size: look names up instead."""
         return self.nearest if self.is_small else tuple(self.walk())
 
     @cached_property
@@ -104,7 +104,7 @@ class Scope:
         return found
 
     def declaring(self, path: str, kind: SymbolKind | None = None) -> Iterator[FileIndex]:
-        """Yield the files that declare a qualified name, nearest first. With ``kind``, it must have this kind."""
+        """Yield the files that declare a qualified name, nearest first. It must have the ``kind``, if given."""
         if kind is None:
             return self._having(lambda file: path in file.names.entries, lambda reach: reach.declaring.get(path, ()))
         return self._having(
@@ -112,14 +112,14 @@ class Scope:
         )
 
     def standing_for(self, name: str) -> Iterator[str]:
-        """Yield the targets of an alias, nearest first; see ``indirect_names``."""
+        """Yield the targets of an alias, nearest first (see ``indirect_names``)."""
         files = self._having(lambda file: name in targets_in(file), lambda reach: reach.standing_for.get(name, ()))
         return (target for file in files for target in targets_in(file)[name])
 
     def _having(
         self, has: Callable[[FileIndex], bool], indexed: Callable[[Reachability], Sequence[str]]
     ) -> Iterator[FileIndex]:
-        """Yield the files that ``has`` accepts, nearest first; a large scope takes them from the index."""
+        """Yield the files that ``has`` accepts, nearest first. In a large scope, they are taken from the index."""
         if self.is_small:
             yield from filter(has, self.nearest)
             return
@@ -137,13 +137,13 @@ class Scope:
             yield from ((file, declared) for declared in file.declared(path))
 
     def define(self, file: FileIndex, declared: Declared) -> Definition:
-        """Return a declaration in one of the files as a definition."""
+        """Return the definition of a declaration in one of the files."""
         symbol = declared.symbol
         span, extent = symbol.span.shifted(declared.offset), symbol.extent.shifted(declared.offset)
         return Definition(file.document.uri, symbol, span, extent, self._iri(file, declared))
 
     def visible(self, kinds: Iterable[SymbolKind], scopes: tuple[str, ...]) -> dict[str, tuple[FileIndex, Declared]]:
-        """Return every name of some kinds, in the form in which it can be written in ``scopes``.
+        """Return every name of some kinds, in the form in which it can be written inside ``scopes``.
 
         If several declarations have the name, the nearest one is used.
         """
@@ -170,8 +170,8 @@ class Scope:
         """Return the IRI prefix of declarations of a file in a namespace, or ``None`` if it is unknown."""
         if namespace is None:
             return None
-        # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
-        # Files of a large cycle are not searched if the first one has it.
+        # The namespace is looked up in the file of the declaration first, then in the files that this file imports.
+        # In a large cycle, other files are not searched if the first file has it.
         for other in chain((file,), (other for other in self.declaring(namespace) if other is not file)):
             for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
@@ -194,6 +194,6 @@ def local_name(symbol: Symbol) -> str:
         # A node may have the same name as the behaviour that it executes.
         return f"node-{symbol.path}"
     if symbol.kind is SymbolKind.PARAMETER:
-        # Templates of a namespace share variables; each predicate has parameters of its own.
+        # Templates of a namespace share variables, but each predicate has its own parameters.
         return f"parameter-{symbol.path}"
     return f"var-{symbol.name}" if symbol.kind in VARIABLES else symbol.name

@@ -23,8 +23,8 @@ def closest(
 ) -> tuple[tuple[str, ...], bool]:
     """Return the known names most similar to a written one, and whether any name of these kinds is known.
 
-    The names have the form in which they can be written in ``scopes``. The result depends on the tables only, which are
-    compared by identity. So it is cached while no name changes.
+    The names have the form in which they can be written inside ``scopes``. The result depends only on the tables, which
+    are compared by identity, so it is cached while no name changes.
     """
     kept = _known_answers(tables)
     key = (kinds, scopes, path)

@@ -61,7 +61,7 @@ def variable_of(site: Site, use: Use) -> Definition | None:
 
 
 def variable_key(definition: Definition) -> str:
-    """Return a key that identifies a variable. Templates of one namespace share variables of the same name."""
+    """Return a key that identifies a variable. Templates of one namespace share a variable if its name is the same."""
     return definition.iri or f"{definition.uri} {definition.symbol.path}"
 
 

@@ -155,7 +155,7 @@ class _Collector:
             said = predicate_in_text(node.template.value, [one.name.text for one in node.arguments])
             phrase = "pred(…)" if said is None else said[0].phrase
         elif isinstance(node, tree.NamedUse):
-            # What its parameters take depends on another declaration.
+            # The kinds of its parameters depend on another declaration.
             refs = [(value, ANYTHING) for value in node.values if isinstance(value, tree.Ref)]
             phrase = node.predicate.path
         else:

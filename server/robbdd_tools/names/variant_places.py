@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 class PlacedVariant:
     """A scenario variant: its definition, its syntax tree, its declaration (or a part of one) and its template.
 
-    The template is ``None`` if it is unknown. ``rows`` are the absolute spans of the rows in its table, in the order of
-    its scenarios; empty without a table.
+    The template is ``None`` if it is unknown. ``rows`` are the absolute spans of its table rows in the order of the
+    scenarios. They are empty if the variant has no table.
     """
 
     definition: Definition
@@ -40,7 +40,7 @@ class PlacedVariant:
 
 
 def variants_of(snapshot: Snapshot, uri: str, within: Span | None = None) -> Iterator[PlacedVariant]:
-    """Yield the variants of a file, or those that touch a part of it, that have an IRI, in text order."""
+    """Yield the variants of a file that have an IRI, or those of them that touch a span, in text order."""
     file = snapshot.file(uri)
     if file is None:
         return
@@ -59,7 +59,7 @@ def variants_of(snapshot: Snapshot, uri: str, within: Span | None = None) -> Ite
 
 
 class VariantIris:
-    """The IRIs of the variants of a file, without their positions: they need not be searched after each keystroke."""
+    """The IRIs of the variants of a file without positions, so that variants are not searched after each keystroke."""
 
     def __init__(self, snapshot: Snapshot, file: FileAnalysis) -> None:
         self._file = file
@@ -68,7 +68,7 @@ class VariantIris:
         self._starts: dict[str | None, str | None] = {}
 
     def of(self, placed: PlacedDeclaration) -> tuple[str | None, ...]:
-        """Return the IRI of each variant of a story, or of a part of one, in text order; ``None`` without one."""
+        """Return the IRI of each variant of a story or of a part of a story, in text order; ``None`` if it has none."""
         return tuple([self._iri(placed, *found) for found in _declared(placed.declaration)])
 
     def _iri(self, placed: PlacedDeclaration, symbol: Symbol | None, name: Span) -> str | None:
