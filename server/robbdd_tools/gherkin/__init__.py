@@ -1,1 +1,1 @@
-"""Gherkin from the graph's data: expand variations, take sentences from the catalog, and render Jinja templates."""
+"""Write Gherkin from the graph's data: expand variations, take sentences from the catalog, render Jinja templates."""

@@ -29,20 +29,20 @@ def scene_tables(writer: StepWriter, scene: SceneModel) -> tuple[SceneTable, ...
 
 
 def variable_table(writer: StepWriter, elements: Iterable[Iri]) -> tuple[SceneTable, ...]:
-    """Return the table of the elements that the values of a scenario add to its scene; empty if there are none."""
+    """Return the table of the elements that the values of a scenario add to its scene. Without such elements, none."""
     names = tuple(elements)
     return (_table(writer, "variable scene elements", names),) if names else ()
 
 
 def members(scene: SceneModel) -> frozenset[Iri]:
-    """Return everything that the tables of a scene list."""
+    """Return all elements that the tables of a scene list."""
     return frozenset((*scene.objects, *scene.workspaces, *scene.agents))
 
 
 def extra_elements(cells: Iterable[Cell], kinds: Mapping[Iri, str], present: Collection[Iri]) -> tuple[Iri, ...]:
     """Return the scene elements among some values that are not yet in the scene.
 
-    ``kinds`` has all scene elements, and ``present`` are those in the scene.
+    The keys of ``kinds`` are all scene elements, and ``present`` are the elements that are already in the scene.
     """
     return tuple(element for element in elements_of(cells) if element in kinds and element not in present)
 

@@ -38,20 +38,20 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
 
 Value = Cell | stated.AnyOf
-"""Value of a variable; in a Scenario Outline a ``Placeholder``."""
+"""Value of a variable. In a Scenario Outline, it is a ``Placeholder``."""
 Values = Mapping[Iri, Value]
 
 
 class UnknownElements(Exception):
-    """A clause needs the elements of a set, or a horizon, but this value varies in the Scenario Outline."""
+    """A clause needs the elements of a set, or a horizon, but these vary between the rows of the Scenario Outline."""
 
 
 @dataclass(frozen=True, slots=True)
 class Binder:
     """Binds the clauses of one model to values.
 
-    A clause whose IRI is in ``by_code`` also contains its values by name. With ``reads_texts``, a text that says a
-    predicate's phrase of values that fit is a fluent with this predicate, so that it can be judged.
+    A clause whose IRI is in ``by_code`` also contains its values by name. If ``reads_texts`` is true, a text that is a
+    predicate's phrase with fitting values becomes a fluent with this predicate, so that it can be judged.
     """
 
     model: AcceptanceModel
@@ -145,7 +145,7 @@ class Binder:
                 return (one,)
 
     def some(self, exists: Exists, values: Values) -> Values:
-        """Return values in which any element of the quantifier's set is assigned to its variable."""
+        """Return the values with *any of* the elements of the quantifier's set as the value of its variable."""
         elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
         return {**values, exists.variable: stated.AnyOf(elements)}
 
@@ -178,7 +178,7 @@ class Binder:
         return found[0] if len(found) == 1 else stated.Junction("or" if operator == "or" else "and", found)
 
     def _any_of(self, place: Iri, values: Values) -> Value:
-        """Return the value of a place. If the value is a set, a behaviour may choose any of its elements."""
+        """Return the value of a place. For a set, return *any of* its elements, because a behaviour may choose one."""
         value = values.get(place, self.model.sets.get(place, place))
         return stated.AnyOf(tuple(map(self._plain, value))) if isinstance(value, tuple) else value
 
@@ -195,7 +195,7 @@ class Binder:
         return {slot: self._slot(slot, arguments.get(slot), values) for slot in slots}
 
     def defined_event(self, event: DefinedEvent, values: Values) -> stated.DefinedEvent | None:
-        """Return an event that a template defines; ``None`` if its number of seconds has no valid value."""
+        """Return an event that a template defines; ``None`` if its number of seconds is invalid."""
         seconds = event.seconds if event.variable is None else seconds_of(values.get(event.variable))
         name = self.curie(event.iri)
         conditions = (self._one_condition(condition, values) for condition in event.conditions)
@@ -203,7 +203,7 @@ class Binder:
         return None if seconds is None else stated.DefinedEvent(name, tuple(fluents), seconds)
 
     def _predicate(self, clause: Fluent | Condition) -> Predicate:
-        """Return the predicate of a clause. Names in the definition of a named predicate are shortened."""
+        """Return the predicate of a clause. The names in a named predicate's definition are shortened."""
         if clause.named is None:
             return self.catalog.predicates[clause.predicate]
         found = self._named_predicates.get(clause.predicate)
@@ -239,7 +239,7 @@ class Binder:
         return None if seconds is None else replace(time, event=self.curie(time.event), horizon=seconds)
 
     def _without_time(self, words: str, clause: Fluent | TextFluent | TextClause, values: Values) -> stated.Text:
-        """Return a clause without a valid horizon. It is a text, so that nothing judges it."""
+        """Return a clause that has no valid horizon. It becomes a text, so that nothing judges it."""
         condition = None if isinstance(clause, TextClause) else self._condition(clause, values)
         time, value = clause.time, None if clause.seconds is None else values.get(clause.seconds)
         event = self.curie(time.end if isinstance(time, During) else time.event)
@@ -291,7 +291,7 @@ def mentions(clause: Clause, variable: Iri) -> bool:
 
 
 def _terms(clause: Fluent | TextFluent) -> list[Iri | str]:
-    """Return what fills the slots of a clause and of its condition."""
+    """Return the terms that fill the slots of a clause and of its conditions."""
     conditions = (one for condition in clause.conditions for one in condition.arguments.values())
     return [*clause.arguments.values(), *conditions]
 

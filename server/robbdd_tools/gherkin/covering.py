@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from robbdd_tools.gherkin.where import Condition
 
 MAX_COMBINATIONS = 100_000
-"""Maximum number of combinations to cover in a product; such an array takes some minutes."""
+"""Maximum number of combinations to cover in a product. Covering so many takes some minutes."""
 
 Row = tuple[int, ...]
-"""One scenario: for each variable the index of its value."""
+"""One scenario, as the index of the value of each variable."""
 Combined = tuple[tuple[int, int], ...]
-"""A combination to cover: (variable, value) for each of its variables."""
+"""A combination to cover: a pair (variable, value) for each of its variables."""
 
 
 class TooManyCombinations(Exception):
@@ -58,7 +58,7 @@ def cover(variation: Product | Table, strength: int, allowed: Condition | None =
     else:
         possible = len({combined for row in space.rows(allowed) for combined in _combined(row, strength)})
     most = comb(len(variation.variables), strength)
-    # The suggestions may leave gaps: first take the scenarios that fill most of them.
+    # The suggested rows may leave gaps: fill them, first with the scenarios that fill most gaps.
     for least in range(most, 0, -1):
         if len(covered) == possible:
             break
@@ -72,7 +72,7 @@ def cover(variation: Product | Table, strength: int, allowed: Condition | None =
 
 @dataclass(frozen=True, slots=True)
 class _Space:
-    """The scenarios of a variation as rows of indices. ``numbers`` maps the rows of a table to their indices."""
+    """The scenarios of a variation as rows of indices. For a table, ``numbers`` maps each row to its index."""
 
     columns: tuple[tuple[Cell, ...], ...]
     numbers: dict[Row, int] | None

@@ -47,7 +47,7 @@ class VariantHeader:
 
     ``columns`` are the names of its variables. ``tables`` are the scene tables that are not in the background.
     ``outline`` expresses all scenarios at once; ``None`` if this is not possible. ``events`` are the definitions of the
-    events that its template defines, with ``<column>`` instead of values.
+    template's events, with ``<column>`` instead of values.
     """
 
     name: str
@@ -67,7 +67,7 @@ class ScenarioText:
     - ``number``: the number of the scenario in the variation (from 1).
     - ``line``: the line of its heading in the feature.
     - ``cells``: its values as words, in the order of the variant's columns.
-    - ``lines``: the feature lines of ``steps``; 0 for a step that the template omits.
+    - ``lines``: the lines of ``steps`` in the feature; 0 for a step that the template omits.
     - ``tables``: its scene tables that are not in the background.
     - ``events``: the definitions of the events that its template defines.
     """
@@ -222,7 +222,7 @@ class _VariantWriter:
         return (*made_from, *variant_tags(self._writer.model, variant))
 
     def _outline(self) -> Outline | None:
-        """Return the outline of the scenarios. A table of elements that clauses add to the scene has several rows."""
+        """Return the outline of the scenarios; ``None`` if clauses add elements, as their table has several rows."""
         if not self._members.issuperset(self._named):
             return None
         return outline(self._writer, self._clauses, self._variant.variation, self._members)
@@ -287,7 +287,7 @@ def _role(clause: Clause) -> str:
 def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tuple[int, ...]) -> ScenarioText:
     """Return a scenario with the lines of its heading and its steps in the rendered text.
 
-    A row of an outline has no steps of its own, so it gets the lines of the outline's steps (``shared``).
+    ``shared`` are the lines of an outline's steps. A row of the outline gets these lines, because it has no own steps.
     """
     heading = 0
     for number, text_line in enumerate(rendered.split("\n"), start=first_line):

@@ -28,7 +28,7 @@ MAP_ENDING = ".map.json"
 class Origin:
     """The source range of a clause.
 
-    It has the name of the file, and (line, column) of the start and of the end, counted from 1.
+    ``file`` is its name. The start and the end are pairs (line, column), counted from 1.
     """
 
     file: str
@@ -38,7 +38,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePlan:
-    """The contents to write: the stories of a model, the scenarios of each variant, and the template.
+    """The content to write: the stories of a model, the scenarios of each variant, and the template.
 
     ``origins`` are the source ranges of clauses, if known.
     """

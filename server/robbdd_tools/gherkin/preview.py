@@ -112,7 +112,7 @@ class _Places:
         if heading is not None:
             yield PreviewLine(above + scenario.line - 1, variant, heading)
         for line, step in zip(scenario.lines, scenario.steps, strict=True):
-            # A model read from a graph has no clauses in its text, but a source map.
+            # A model that was read from a graph has no clauses in its text: use the source map of the graph.
             written = self._clauses.get(step.clause) or self._sources.node(step.clause)
             if line and written is not None:
                 yield PreviewLine(above + line - 1, step.clause, written)

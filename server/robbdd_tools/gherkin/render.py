@@ -24,7 +24,7 @@ BLOCKS = ("feature", "variant", "scenario", "end")
 """Blocks that a template may define; ``scenario`` is required."""
 ENDING = ".feature.jinja"
 LONGEST_MESSAGE = 2000
-"""Maximum number of characters of an error message, which a template's expressions determine."""
+"""Maximum number of characters of an error message, because expressions of a template determine its length."""
 
 
 class TemplateProblem(Exception):
@@ -97,7 +97,7 @@ def _limited(pieces: Iterator[str], largest: int) -> Iterator[str]:
 
 @cache
 def our_sheet(name: str = OURS[0]) -> Sheet:
-    """Return one of the built-in templates."""
+    """Return a built-in template."""
     return compiled(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "")
 
 
@@ -161,7 +161,7 @@ def compiled(file: str, source: str, largest: int | None = None) -> CompiledShee
 
 
 def _problem(sheet: CompiledSheet, error: Exception) -> TemplateProblem:
-    """Return an error of a template as a problem at the innermost template line in its traceback."""
+    """Convert an error of a template to a problem at the innermost template line in the traceback."""
     templates = {template.filename: template for template in sheet.chain}
     places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
     file, line = sheet.file, 0

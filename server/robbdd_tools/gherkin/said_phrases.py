@@ -1,4 +1,4 @@
-"""Read the text of a ``pred("…")`` as the predicate whose phrase it says."""
+"""Find the catalog predicate whose phrase is the text of a ``pred("…")``."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 def said_phrase(
     model: AcceptanceModel, clause: TextFluent, values: Mapping[Iri, Cell | AnyOf]
 ) -> tuple[Predicate, dict[str, Cell]] | None:
-    """Return the predicate whose phrase a text says, and the values of its slots.
+    """Return the predicate whose phrase is the text of a clause, and the values of its slots.
 
-    The result is ``None`` if the text says no phrase, or if a value has another kind than its slot.
+    The result is ``None`` if the text is not the phrase of a predicate, or if a value has another kind than its slot.
     """
     found = predicate_in_text(clause.template, clause.arguments)
     if found is None:

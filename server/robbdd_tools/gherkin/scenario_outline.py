@@ -36,8 +36,8 @@ def outline(
 ) -> Outline | None:
     """Return the outline of some clauses, or ``None`` if a table of values cannot express the scenarios.
 
-    A table cannot express them in these cases: a quantifier has a set that varies; some parsers read a cell differently
-    from others; only some of a variable's values are in the scene (``present``).
+    A table cannot express them if a quantifier has a set that varies, if parsers would read a cell differently, or if
+    only some of a variable's values are in the scene (``present``).
     """
     columns = {variable: variable_name(variable) for variable in variation.variables}
     words = [writer.word(cell) for cell in _cells(variation)]
@@ -65,14 +65,14 @@ def outline(
 def _added(writer: StepWriter, cell: Cell, present: Collection[Iri]) -> bool | None:
     """Return whether a value adds an element to the scene.
 
-    For a set that adds elements, return ``None``, because it needs several rows.
+    For a set that adds elements, return ``None``, because the table of added elements would need several rows.
     """
     new = [element for element in elements_of((cell,)) if element in writer.model.kinds and element not in present]
     return None if new and isinstance(cell, tuple) else bool(new)
 
 
 def _plain(word: str) -> bool:
-    """Whether all parsers read a word in a table cell alike."""
+    """Return whether all parsers read a word in a table cell in the same way."""
     return "\\" not in word and word == word.strip() and word != ""
 
 
@@ -82,7 +82,7 @@ def _cells(variation: Product | Table) -> Iterator[Cell]:
 
 
 def _column(variation: Product | Table, index: int) -> Iterable[Cell]:
-    """Return the values of a variable. The values of a selection are its elements, each as a set of one."""
+    """Return the values of a variable. For a selection, these are the elements of its set, each as a set of one."""
     if isinstance(variation, Table):
         return (row[index] for row in variation.rows)
     choices = variation.choices[index]

@@ -19,8 +19,8 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Variant
 class Wanted:
     """A user's selection. ``where`` filters the scenarios, and at most one other criterion reduces them further.
 
-    - ``first`` and ``sample``: numbers of scenarios of the whole model.
-    - ``strength``: the number of variables whose combinations a covering array of each variant contains.
+    - ``first`` and ``sample``: the number of scenarios to select from the whole model, the first ones or random ones.
+    - ``strength``: each variant's covering array contains all combinations of values of so many variables.
     - ``seed``: determines the sample.
     """
 
@@ -58,7 +58,7 @@ class Selected:
         self.total = self._total()
 
     def scenarios(self, variant: Variant) -> Iterator[Numbered]:
-        """Yield the selected scenarios of a variant in written order, each with its number among all its scenarios."""
+        """Yield the selected scenarios of a variant in written order, each with its number among all of the variant."""
         indices = self._indices.get(variant.iri)
         if indices is not None:
             return ((index + 1, at(variant.variation, index)) for index in indices)

@@ -78,7 +78,7 @@ def patterns(model: AcceptanceModel) -> list[Pattern]:
 
 
 def free_patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct sentences of a model that are free text and say no phrase of the catalog."""
+    """Return the distinct sentences of a model that are free text, except phrases of the catalog."""
     clauses = (
         c
         for story in model.stories

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
 
 Scope = tuple[tuple[Iri, int], ...]
-"""Iterations of ``for all``, outermost first: the quantifier and the index of its element, from 0.
+"""Iterations of ``for all``, outermost first. Each one is a quantifier and the index (from 0) of its element.
 
-In a body with several parts, ``PART`` and the number of the part, from 0, come before the iterations in that part.
+If a body has several parts, a pair of ``PART`` and the part's number (from 0) precedes the iterations in that part.
 """
 PART = Iri("")
 Reach = tuple[int, int] | None
@@ -52,8 +52,8 @@ class Step:
     - ``statement``: the content of the text as data.
     - ``source``: the clause of the model, and the values of its variables.
     - ``scope``: the iterations of ``for all`` that contain the step, outermost first.
-    - ``reach``: the first and the last part of its body that a Given or Then clause is about; ``None`` for all. A Given
-      clause is about the parts after it, and a Then clause about those before it.
+    - ``reach``: the first and the last part of the body that the step concerns; ``None`` for all. A Given clause
+      concerns the parts after it, and a Then clause the parts before it.
     """
 
     keyword: str
@@ -112,7 +112,7 @@ class StepWriter:
             yield from self._conditions(part, values, scope, reach)
 
     def definition(self, event: DefinedEvent, values: Values) -> str:
-        """Return the definition of an event as a sentence; empty if its number of seconds has no valid value."""
+        """Return the definition of an event as a sentence, or an empty text if its number of seconds is invalid."""
         found = self._binder.defined_event(event, values)
         if found is None:
             return ""
@@ -121,7 +121,7 @@ class StepWriter:
         return f'event "{found.name}" occurs when {conditions}{lasting}'
 
     def meanings(self, clauses: Collection[Clause], events: Iterable[DefinedEvent], values: Values) -> tuple[str, ...]:
-        """Return what each phrase of a named predicate in some clauses and events means, once for each phrase."""
+        """Return the meaning of each phrase of a named predicate in some clauses and events, once for each phrase."""
         if not any(_uses_named(clause) for clause in every_clause(clauses)) and not any(
             one.named for event in events for one in event.conditions
         ):
@@ -139,7 +139,7 @@ class StepWriter:
         return tuple(found)
 
     def _known_steps(self, clauses: Collection[Clause], values: Values) -> Iterator[Step]:
-        """Yield steps as far as their elements are known; in a Scenario Outline, a set may vary."""
+        """Yield steps until one needs unknown elements. In a Scenario Outline, a set may vary."""
         with suppress(UnknownElements):
             yield from self.steps(clauses, values)
 
@@ -157,7 +157,7 @@ class StepWriter:
 
 
 def _reach(role: str, number: int, count: int) -> Reach:
-    """Return the parts that a clause is about. ``number`` is that of its part, ``count`` that of all parts."""
+    """Return the parts that a clause concerns. ``number`` is the clause's own part, ``count`` the number of parts."""
     if role == "given":
         return (number, count - 1) if 0 < number < count else None
     return (0, number) if number < count - 1 else None
@@ -175,7 +175,7 @@ def _meaning(predicate: Predicate, arguments: Mapping[str, stated.Filler]) -> It
 
 
 def _defined(definition: Definition, arguments: Mapping[str, stated.Filler], *, outer: bool = False) -> str:
-    """Return a definition with its values as words. Named predicates in it are written out, too."""
+    """Return a definition in words, with its values. Named predicates in it are also replaced by their definitions."""
     match definition:
         case Operand(predicate, fillers):
             own = {slot: arguments[one.parameter] if isinstance(one, Passed) else one for slot, one in fillers.items()}

@@ -18,7 +18,7 @@ class TemplateSource:
 
 @dataclass(frozen=True, slots=True)
 class BlockRequest:
-    """A request to render a block. ``fresh`` are the values, by name, that differ from those of the last request."""
+    """A request to render a block. ``fresh`` has, by name, the values that differ from the last request."""
 
     block: str
     names: tuple[str, ...]
@@ -29,7 +29,7 @@ Request = TemplateSource | BlockRequest
 
 
 def encoded(request: Request) -> str:
-    """Return a request as the worker reads it."""
+    """Return a request in the form in which the worker reads it."""
     return b64encode(pickle.dumps(request)).decode("ascii") + "\n"
 
 

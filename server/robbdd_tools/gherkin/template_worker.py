@@ -50,7 +50,7 @@ def main() -> None:
 
     send({"value": None})
     for line in sys.stdin:
-        # The parent kills this process on a timeout; without a parent, this timer ends it.
+        # The parent kills this process on a timeout. If the parent no longer exists, this timer ends the process.
         faulthandler.dump_traceback_later(2 * TEMPLATE_SECONDS.value(), exit=True)
         answer = _answered(worker.answer, decoded(line))
         faulthandler.cancel_dump_traceback_later()

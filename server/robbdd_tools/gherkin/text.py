@@ -1,7 +1,8 @@
 """Escape user text in features so that every parser reads it back unchanged.
 
-A feature consists of lines, a step's values are in double quotes, a table's cells between bars. Delimiters of these in
-user text are written with a backslash: ``\\n``, ``\\"``, ``\\\\``, and ``\\uXXXX`` for other line terminators.
+A feature consists of lines. Values in a step are in double quotes, and cells of a table are between bars. In user
+text, these delimiters are written with a backslash: ``\\n``, ``\\"``, ``\\\\``, and ``\\uXXXX`` for other line
+terminators.
 """
 
 from __future__ import annotations
@@ -10,9 +11,9 @@ import re
 from collections.abc import Iterable
 
 _NAMED = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
-# Line terminators of str.splitlines, and so of behave, and control characters of terminals.
+# Control characters of terminals, and the line terminators of str.splitlines, which behave uses.
 _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029]")
-# Quoted or escaped text, or tokens with a meaning in a group.
+# Quoted or escaped text, or tokens that have a meaning in a group.
 _GROUPING = re.compile(r'("(?:[^"\\]|\\.)*"|\\.)|[()"]|(?<!\S)(?:and|or|not)(?!\S)')
 _TAG = re.compile(r"@?([a-z]+)=((?:[A-Za-z0-9.:_;-]|=[0-9A-F]{2})*)")
 _UNSAFE_IN_TAGS = re.compile(r"[^A-Za-z0-9.:_-]")
@@ -25,7 +26,7 @@ def line(text: str) -> str:
 
 
 def free(text: str) -> str:
-    """Return a text for use in a step outside of quotes. It is stripped, because parsers drop outer blanks."""
+    """Return a text for use in a step outside quotes. It is stripped, because parsers drop white space at both ends."""
     return _control_escaped(text.strip().replace("\\", "\\\\"))
 
 

@@ -95,7 +95,7 @@ def _end_late(process: RunningProcess, is_late: threading.Event) -> None:
 
 
 def _end(process: RunningProcess, wait: Callable[[], int], *streams: IO[str]) -> None:
-    """End the process, whatever it works on."""
+    """End the process, even during a request."""
     end_group(process)
     wait()
     for stream in streams:

@@ -8,7 +8,7 @@ from math import prod
 from robbdd_tools.graph.acceptance_model import Cell, Iri, Product, Selection, Table
 
 Binding = Mapping[Iri, Cell]
-"""Variable → its value in one scenario."""
+"""Maps each variable to its value in one scenario."""
 
 
 def bindings(variation: Product | Table) -> Iterator[Binding]:

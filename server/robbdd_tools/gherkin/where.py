@@ -8,9 +8,9 @@
     comparison  = variable ( "=" | "!=" | "=~" | "<" | "<=" | ">" | ">=" ) value
 
 A variable is named as in the model, with or without its template (``fetch.part``). A value is a word or a quoted
-string; it is compared with an element's name with or without prefix, a string, or a number. ``=~`` matches the whole
-value with a regular expression; ``<``, ``<=``, ``>`` and ``>=`` compare numbers. A set matches if one element does. ``a
-!= b`` is ``not a = b``; a comparison with a variable that the variant lacks is false.
+string. It is compared with a string, with a number, or with the name of an element with or without its prefix. ``=~``
+matches a regular expression against the whole value. ``<``, ``<=``, ``>`` and ``>=`` compare numbers. A set matches if
+one of its elements matches. ``a != b`` means ``not a = b``. A comparison is false if the variant lacks the variable.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from robbdd_tools.gherkin.scenario_outline import variable_name
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Value, Variant
 
 Condition = Callable[[Sequence[Cell]], bool | None]
-"""Tests the first values of a scenario, in the order of its variables; ``None`` if the result depends on later ones."""
+"""Tests the first values of a scenario in variable order. The result is ``None`` if it depends on later values."""
 
 _TOKEN = re.compile(
     r"""\s*(?:(?P<sign>!=|=~|<=|>=|=|<|>)|(?P<paren>[()])|(?P<quoted>"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')"""
@@ -32,7 +32,7 @@ _TOKEN = re.compile(
 )
 _BARE_VALUE = re.compile(r"\s*([^\s()\"'][^\s()]*)")
 MAX_NESTED = 100
-"""Maximum nesting of parentheses and negations in one expression."""
+"""Maximum nesting depth of parentheses and negations in an expression."""
 _NUMBERS: Mapping[str, Callable[[float, float], bool]] = {
     "<": lambda a, b: a < b,
     "<=": lambda a, b: a <= b,
@@ -174,7 +174,7 @@ class _Token:
 
 
 class _Parser:
-    """A recursive-descent parser. The value after an operator is read as one word, whatever it contains."""
+    """A recursive-descent parser. The value after an operator is read as one word, even if it contains operators."""
 
     def __init__(self, text: str) -> None:
         self._text = text

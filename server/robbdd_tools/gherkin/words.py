@@ -1,4 +1,4 @@
-"""Values in the sentences of steps."""
+"""Write values in the sentences of steps."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
 
 
 def condition_words(condition: Condition | None) -> str:
-    """Return the condition of a clause as it follows the predicate in a sentence; empty if there is none."""
+    """Return the text of a clause's condition, which follows the predicate in a sentence; empty if there is none."""
     return "" if condition is None else f" whenever {filled(condition.predicate.sentence, condition.arguments)}"
 
 

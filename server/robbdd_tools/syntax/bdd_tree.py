@@ -38,7 +38,7 @@ class Task(Node):
 
 @dataclass(frozen=True, slots=True)
 class Requirement(Node):
-    """``Requirement (ns=…) name { "text" id: "…" source: "…" }``; ``identifier`` is its identifier in other tools."""
+    """``Requirement (ns=…) name { "text" id: "…" source: "…" }``; ``identifier`` identifies it in other tools."""
 
     namespace: NamespaceArgument | None
     name: Name
@@ -84,7 +84,7 @@ class TextPredicate(Node):
 class Fluent(Node):
     """``name: holds(predicate [whenever conditions], time constraint) [verifies requirements]``.
 
-    ``published`` generates a missing name.
+    The module ``published`` generates the name if it is missing.
     """
 
     name: Name
@@ -112,7 +112,7 @@ class Negation(Node):
 
 @dataclass(frozen=True, slots=True)
 class Conjunction(Node):
-    """``( e and e … )``, also a lone expression in parentheses."""
+    """``( e and e … )``, or a single expression in parentheses."""
 
     operands: tuple[Expression, ...]
 
@@ -153,7 +153,7 @@ class Occurrence(Node):
 
 @dataclass(frozen=True, slots=True)
 class Emission(Node):
-    """``emits <moment> as <event>``: maps the behaviour's event ``moment`` (``pick-end``) to an event of the model."""
+    """``emits <moment> as <event>``: maps the behaviour's own event (``moment``, as ``pick-end``) to a model event."""
 
     moment: Name
     event: Ref
@@ -285,7 +285,7 @@ TreeNode = TreeComposite | TreeLeaf
 class BehaviourTree(Node):
     """``Behaviour Tree (ns=…) name { … }``: the nodes that behaviours can be linked to.
 
-    Either one root with all others below it or, with ``source``, the names of the nodes that Python code makes.
+    The nodes are one root with all others below it. If ``source`` is given, Python code creates the named nodes.
     """
 
     namespace: NamespaceArgument | None

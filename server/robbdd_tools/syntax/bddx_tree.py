@@ -1,6 +1,6 @@
 """Syntax trees of executions: behaviour implementations, observations, policies, scenario executions.
 
-Numbers are kept as written; units are kept with them where the language offers a choice.
+Numbers are kept as written, together with their units if the language allows several units.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class RosAction(Node):
 
 @dataclass(frozen=True, slots=True)
 class ProcessSystem(Node):
-    """``process "command"``, with the time within which it answers."""
+    """``process "command"``, with the time within which the process must answer."""
 
     command: Text
     limit: Number | None
@@ -37,7 +37,7 @@ class ProcessSystem(Node):
 
 @dataclass(frozen=True, slots=True)
 class EndpointSystem(Node):
-    """``endpoint "ws://…"``, with the time within which it answers."""
+    """``endpoint "ws://…"``, with the time within which the endpoint must answer."""
 
     address: Text
     limit: Number | None
@@ -79,7 +79,7 @@ class Transforms(Node):
 class GroundTruth(Node):
     """``simulation ground truth update-rate: … Hz [noise: … unit] [latency: … s]``.
 
-    ``noise`` is the standard deviation of a position, by axis.
+    ``noise`` is the standard deviation of a position along each axis.
     """
 
     rate: Number

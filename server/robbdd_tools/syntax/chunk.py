@@ -1,8 +1,8 @@
 """Parse one chunk with the grammar of its file kind. On an error, report the expected text.
 
 The grammars are written for textX. ``peg`` compiles them into a faster parser, because editors parse on every
-keystroke. A grammar with notation that ``peg`` does not know is parsed by textX itself. Tests check that both have the
-same results.
+keystroke. If a grammar has notation that ``peg`` does not support, textX itself parses. Tests check that both parsers
+have the same results.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from robbdd_tools.syntax.parsed import Expectation, Parsed, RawNode, Rejected
 from robbdd_tools.syntax.peg import Compiled, State
 from robbdd_tools.syntax.textx import parse_with_textx
 
-# Rules are compiled on first use; a second thread must not see one half compiled. Reentrant, because work at a
+# Rules are compiled at first use, and another thread must not see a half-compiled rule. Reentrant, because work at a
 # checkpoint in the middle of a text may parse another one.
 _COMPILING = RLock()
 

@@ -1,9 +1,8 @@
-"""The constructs of the language with their forms and meanings: the one text behind hover and the reference.
+"""The constructs of the language with their forms and meanings. Hover and the reference show the same texts.
 
-The texts are in ``grammar/reference``, one file for each grammar. A section names the rules that belong to a construct,
-and keywords that belong to it wherever the grammar has them (``'word'``) or in one rule (``'Rule.word'``). A rule that
-no section names belongs to the construct that uses it, so that an addition to the grammar is described without a change
-here.
+The texts are in ``grammar/reference``, one file for each grammar. A section names the rules of a construct, and its
+keywords, either in all rules (``'word'``) or in one rule (``'Rule.word'``). A rule that no section names belongs to the
+construct that uses the rule, so an addition to the grammar is described without a change here.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ _PART = re.compile(r"`('?)([^`']+)'?`")
 class Construct:
     """A construct of the language.
 
-    - ``source``: the name of the grammar that it belongs to, ``base`` for those of all files.
+    - ``source``: the name of its grammar. It is ``base`` for constructs of all files.
     - ``rules`` and ``words``: the rules and the keywords that its section names.
     - ``form``: how it is written, with ``…`` and names in capitals.
     - ``meaning``: what it means, in Markdown.
@@ -49,7 +48,7 @@ class Construct:
 
     @property
     def markdown(self) -> str:
-        """The construct as hover shows it."""
+        """The text that hover shows for the construct."""
         return f"```robbdd\n{self.form}\n```\n\n{self.meaning}"
 
 
@@ -86,7 +85,7 @@ def constructs_with(language: str, word: str) -> list[Construct]:
 
 
 def rules_of(language: str, construct: Construct) -> list[str]:
-    """Return all rules that belong to a construct: those that it names, then those that only these use."""
+    """Return all rules of a construct: first the rules that it names, then the unnamed rules that these use."""
     owners = _owners(grammar_name(language))[1]
     unnamed = (rule for rule, owner in owners.items() if owner is construct and rule not in construct.rules)
     return [*construct.rules, *unnamed]
@@ -94,13 +93,13 @@ def rules_of(language: str, construct: Construct) -> list[str]:
 
 @cache
 def read_rules(language: str) -> Mapping[str, grammar.Expression]:
-    """Return the rules of a kind of file, those of all files and of the catalog's phrases included."""
+    """Return the rules of a kind of file, including the shared rules and those of the catalog's phrases."""
     return grammar.read_grammar(grammar_text(language))
 
 
 @cache
 def _owners(name: str) -> tuple[Mapping[str, Construct], Mapping[str, Construct]]:
-    """Return the constructs of the keywords that sections name, and those of all rules that belong to one."""
+    """Return the construct of each keyword that a section names, and the construct of each rule that belongs to one."""
     rules = read_rules(name)
     described = (*constructs(name), *constructs("base"))
     words = {word: one for one in reversed(described) for word in one.words}
@@ -133,7 +132,7 @@ def uses(expression: grammar.Expression) -> Iterator[str]:
 
 
 def literals(expression: grammar.Expression) -> Iterator[str]:
-    """Yield the keywords and symbols that are written in an expression itself."""
+    """Yield the keywords and symbols in an expression itself, but not those in rules that it uses."""
     match expression:
         case grammar.Literal(text):
             yield text

@@ -59,7 +59,7 @@ class SymbolKind(StrEnum):
 
 
 FILE_NAMESPACE = ""
-"""Namespace of a declaration that omits it where the language allows that: the only one of its file."""
+"""Stands for the only namespace of a file, if a declaration omits the namespace and the language allows this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +69,8 @@ class Symbol:
     - ``path``: the qualified name (``parts.bolt``).
     - ``span``: the span of the name itself; empty if the name is generated.
     - ``extent``: the span of the whole declaration.
-    - ``namespace``: the name in the nearest enclosing ``(ns=…)``; ``FILE_NAMESPACE`` if that is omitted; ``None`` for a
-      name without an IRI of its own.
+    - ``namespace``: the name in the nearest enclosing ``(ns=…)``; ``FILE_NAMESPACE`` if it is omitted; ``None`` if the
+      name has no IRI of its own.
     - ``target``: a qualified name whose members are also members of this name, for example the template of a kinematic
       tree instance.
     """
@@ -96,7 +96,7 @@ class Reference:
 class SyntaxFix:
     """Text that repairs a fault when it replaces ``span``. If ``span`` is empty, the text is inserted.
 
-    ``title`` describes the fix; empty if its text does.
+    ``title`` describes the fix. It is empty if the text itself is the description.
     """
 
     span: Span
@@ -115,7 +115,7 @@ class SyntaxFault:
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Declaration:
-    """One chunk with its tree (``None`` if broken), names, references and faults. They depend on its text only.
+    """One chunk with its tree (``None`` if broken), names, references and faults. All depend only on its text.
 
     Declarations are compared by identity. The cache returns the same object for the same text, because a keystroke
     looks up hundreds of declarations. A long story has ``parts`` in text order: the text before its scenarios, each

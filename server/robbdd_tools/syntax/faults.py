@@ -43,14 +43,14 @@ _PLACES = {
     "for all": "'for all' is written instead of 'When:', which is inside its braces",
     "Then": "'Then:' must come after 'When:' or 'for all'",
 }
-"""Required order of the parts of a scenario, which users often get wrong."""
+"""Part of a scenario → message on its required order. Users often get the order wrong."""
 _UNJOINED = "clauses joined by '{0}' need parentheses around all of them: '( … {0} … )'"
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
 _EMPTY = re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z")
 _GIVEN = re.compile(r"(?<![\w\-.])(Given)\s*:")
 _WHEN = re.compile(r"(?<![\w\-.])(?:When\s*:|for\s+all\b)")
 _NOTHING = "nothing is written between '{0}:' and '{1}': write what belongs to '{0}:' below it, or remove it"
-# The keyword of a part out of order is read as a clause name; these are the tokens then missing after it.
+# If a part is out of order, its keyword is read as a clause name. Then one of these tokens is missing after it.
 _AS_NAMES = {
     "holds": re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z"),
     ":": re.compile(r"(?<![\w\-.])(for)\s+all\Z"),
@@ -66,7 +66,7 @@ def fault_in(text: str, fault: Fault) -> SyntaxFault:
 
 
 def expected_words(expectation: Expectation) -> list[str]:
-    """Return the text that is allowed at a place in words: keywords in quotes, then names, strings and numbers."""
+    """Describe the text that is allowed at a place: first keywords in quotes, then names, strings and numbers."""
     literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
     named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
     rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})
@@ -103,7 +103,7 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
 
 
 def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
-    """Return the fault of a scenario part that is out of order, or without what belongs to it."""
+    """Return the fault of a scenario part that is out of order or has no content."""
     part = _PART.match(text, rejected.offset)
     label = _EMPTY.search(text, 0, rejected.offset)
     if part is not None and label is not None:
@@ -142,7 +142,7 @@ def _without_unit(text: str, rejected: Rejected) -> SyntaxFault | None:
 
 
 def _unit_after(head: str) -> str:
-    """Return a unit of the quantity that follows the words at the end of a text."""
+    """Return a unit of the quantity that phrases expect after the words at the end of a text."""
     words = " ".join(head[-LONGEST_WORD:].split())
     for word in load_catalog().predicates.values():
         before, _, after = word.phrase.partition("#")

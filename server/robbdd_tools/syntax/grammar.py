@@ -61,7 +61,7 @@ class Optional:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """An attribute of the rule's object; ``operator`` is ``=``, ``?=``, ``+=`` or ``*=``."""
+    """An assignment to an attribute of the rule's object. ``operator`` is ``=``, ``?=``, ``+=`` or ``*=``."""
 
     attribute: str
     operator: str

@@ -10,9 +10,9 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.phrases import phrase_rules
 
 _GRAMMARS = {"ktree": "scenex", "scenario": "bdd"}
-"""File kinds, and parts of declarations, that use the grammar of another one."""
+"""File kinds, and parts of declarations, that use the grammar of another file kind."""
 ROOTS = {"scenario": "ScenarioChunk"}
-"""Root rules of parts of declarations; the root of a file kind is the first rule of its grammar."""
+"""Part of a declaration → its root rule. The root rule of a file kind is the first rule of its grammar."""
 
 
 @cache

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MAX_STARTS = 24
-"""Maximum number of places where the first of the joined clauses may start; a clause has fewer words."""
+"""Maximum number of places tried as the start of the first joined clause. A clause has fewer words."""
 _SPACE = r"(?:\s|//[^\n]*\n)"
 _WORD = re.compile(rf"(?<=[)>}}\"']){_SPACE}*(?<![\w\-.])(?P<word>and|or){_SPACE}*\Z")
 _NOT = re.compile(rf"(?<![\w\-.<])(?P<word>not){_SPACE}*\Z")
@@ -28,8 +28,8 @@ _MAX_LENGTH = 4000
 class Joined:
     """Clauses that lack parentheses around them.
 
-    - ``start``: where the first clause starts, or the 'not' before the only one.
-    - ``word``: the first 'and' or 'or' between them, or the 'not'.
+    - ``start``: the start of the first clause, or of the 'not' before a single clause.
+    - ``word``: the place of the first 'and' or 'or' between them, or of the 'not'.
     - ``end``: the end of the last clause; ``None`` if the text ends before a clause is complete.
     """
 
@@ -39,7 +39,7 @@ class Joined:
 
 
 def joining_word(text: str, offset: int) -> Span | None:
-    """Return the 'and' or 'or' after a clause in front of an offset, or ``None``."""
+    """Return the place of the 'and' or 'or' that follows a clause and ends directly before an offset, if any."""
     match = _WORD.search(text, max(0, offset - _MAX_LENGTH), offset)
     return None if match is None else Span(*match.span("word"))
 
@@ -49,7 +49,7 @@ def joined_clauses(language: str, text: str, stopped: Rejected) -> Joined | None
     if ":" not in stopped.expected.literals:
         return None
     negation = _NOT.search(text, max(0, stopped.offset - _MAX_LENGTH), stopped.offset)
-    # After '(not' a clause may follow; without the parenthesis, 'not' is read as a clause's name.
+    # After '(not', the parser accepts a clause. Without the parenthesis, it reads 'not' as a clause's name.
     if negation is not None and "(" not in stopped.expected.literals:
         start, end = negation.span("word")
         return Joined(start, Span(start, end), _end(language, text, start))
@@ -57,7 +57,7 @@ def joined_clauses(language: str, text: str, stopped: Rejected) -> Joined | None
     if word is None:
         return None
     for start in islice(_starts(text, word.start), MAX_STARTS):
-        # Text up to the end of the word shows whether a clause starts here; the rest may have more errors.
+        # The text up to the end of the word shows whether a clause starts here. The rest may have more errors.
         begun = f"{text[:start]}({text[start : word.end]} "
         found = parse_chunk(language, begun)
         if isinstance(found, Rejected) and not begun[found.offset :].strip():
@@ -81,7 +81,7 @@ def _starts(text: str, offset: int) -> Iterator[int]:
 
 
 def _end(language: str, text: str, start: int) -> int | None:
-    """Return the end of the joined clauses that start at an offset, if the parser gets there."""
+    """Return the end of the joined clauses that start at an offset; ``None`` if the parser stops before it."""
     opened = f"{text[:start]}({text[start:]}"
     found = parse_chunk(language, opened)
     if not isinstance(found, Rejected) or ")" not in found.expected.literals or found.offset >= len(opened):

@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 CACHED = 4
-"""Texts whose objects are kept, since hovers of one reader are close to each other."""
+"""Number of texts whose parsed objects are cached: a reader usually hovers over nearby places."""
 PHRASE_WORD = "PhraseWord"
-"""The rule of the words in the phrase of a named predicate, which may be written like keywords."""
+"""The rule of the words in a named predicate's phrase. Such a word may be spelt like a keyword."""
 _STORY = re.compile(r"\s*User\b")
 
 
 @dataclass(frozen=True, slots=True)
 class Keyword:
-    """A keyword in a chunk, and the rule that has it; empty if the chunk has errors that hide its structure."""
+    """A keyword in a chunk, and the rule that contains it. The rule is empty if errors hide the chunk's structure."""
 
     word: str
     rule: str
@@ -42,7 +42,7 @@ def keyword_in_part(language: str, part: Declaration, offset: int) -> Keyword | 
         return None
     if isinstance(part.tree, tree.Variant):
         return keyword_at("scenario", part.text, offset)
-    # The text before the scenarios of a story is no declaration without them.
+    # The text before the scenarios of a story is not a declaration by itself.
     begins_story = part.tree is None and _STORY.match(part.text)
     return keyword_at(language, f"{part.text}{STAND_IN}}}" if begins_story else part.text, offset)
 
@@ -67,7 +67,7 @@ def keyword_at(language: str, text: str, offset: int) -> Keyword | None:
 
 @cache
 def keyword_tokens(language: str) -> re.Pattern[str]:
-    """Return an expression of tokens, of which only keywords are in the group ``word``."""
+    """Return a regular expression that matches tokens. Only keywords are in its group ``word``."""
     every = {
         text for rule in read_rules(grammar_name(language)).values() for text in literals(rule) if text[0].isalpha()
     }
@@ -112,7 +112,7 @@ def _contains(node: RawNode, offset: int) -> bool:
 
 @cache
 def _rule_of(language: str, rule: str, word: str) -> str | None:
-    """Return the rule that has a keyword: an object's own rule, or one of a text in it."""
+    """Return the rule that contains a keyword: ``rule`` itself, or a text rule that it uses."""
     rules = read_rules(grammar_name(language))
     waiting, seen = [rule], {rule}
     while waiting:

@@ -212,7 +212,7 @@ TreeEntry = TreeUse | RigidBody | Joints
 
 @dataclass(frozen=True, slots=True)
 class KinematicTree(Node):
-    """``ktree name { … }``; one without a namespace is a template."""
+    """``ktree name { … }``; a tree without a namespace is a template."""
 
     namespace: NamespaceArgument | None
     name: Name

@@ -92,7 +92,7 @@ def moved_reference(reference: Reference, by: int) -> Reference:
 
 
 def moved_ref(ref: Ref, by: int) -> Ref:
-    """Return the reference of a use at its place in a larger text."""
+    """Return the ``Ref`` of a reference at its place in a larger text."""
     return Ref(ref.span.shifted(by), ref.role, ref.path)
 
 

@@ -81,7 +81,7 @@ _NEAR_MISSES = (
     NearMiss(r"", r"#|/\*", "a comment starts with '//'"),
     NearMiss(r"\b(?:Scenario|Template|Story)\s*\Z", r":\s*", "no ':' is allowed before the name", fix=lambda _: " "),
 )
-"""The first match wins."""
+"""Common mistakes. If several match, the first one is reported."""
 
 
 _OTHER_FILES = (
@@ -94,7 +94,7 @@ _OTHER_FILES = (
 
 
 def other_file(text: str, offset: int) -> str | None:
-    """Return the message on a declaration that another kind of file contains, or ``None`` if none begins there."""
+    """Return the message on a declaration that belongs in another kind of file; ``None`` if none begins here."""
     for begin, kind in _OTHER_FILES:
         match = begin.match(text, offset)
         if match is not None:
@@ -131,5 +131,5 @@ def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) ->
 
 
 def _may_be_anything(rejected: Rejected) -> bool:
-    """Return whether so many texts are allowed at a place that the intended one is uncertain."""
+    """Return whether so many texts are allowed at a place that the intended text is uncertain."""
     return len(rejected.expected.literals - {"pred", "the", "every"}) > 2

@@ -15,7 +15,7 @@ from robbdd_tools.syntax.story_cut import cut_story, quotes_cuts
 from robbdd_tools.syntax.symbols import references, symbols
 
 CACHED_LETTERS = 100_000
-"""Characters of text whose declarations stay cached while unused; a declaration takes about 100 bytes per character."""
+"""Unused declarations of so many characters stay cached. A declaration takes about 100 bytes per character."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
 

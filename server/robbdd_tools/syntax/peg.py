@@ -17,11 +17,11 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.syntax import grammar
 
 DEEPEST = 6000
-"""Maximum depth of Python calls: some hundreds of nested brackets, far more than anybody writes. Calls between Python
-functions need no C stack."""
+"""Maximum depth of Python calls. It allows some hundreds of nested brackets, far more than anyone writes. Calls between
+Python functions need no C stack."""
 _KEYWORD = re.compile(r"[^\d\W]\w*")
 BLANK = r"(?:[ \t\r\n]+|//[^\n]*)*"
-"""The expression of white space and comments, which may precede each token."""
+"""Regular expression of white space and comments, which may precede each token."""
 _BLANK = re.compile(BLANK)
 Log = list[tuple[str, Any]]
 Parse = Callable[["State", int, Log], int]
@@ -187,7 +187,7 @@ class Compiled:
 
 
 def literal_pattern(text: str) -> str:
-    """Return the expression of a keyword or symbol. A keyword ends where its word ends."""
+    """Return the regular expression of a keyword or symbol. A keyword must be a whole word."""
     return re.escape(text) + (r"\b" if _KEYWORD.fullmatch(text) else "")
 
 

@@ -35,7 +35,7 @@ def phrase_rules(catalog: Catalog) -> str:
 
 
 def word_of_rule(rule: str) -> str | None:
-    """Return the catalog name of a generated rule, ``None`` for any other rule."""
+    """Return the catalog word of a generated rule, or ``None`` for any other rule."""
     for prefix in (PREDICATE_RULE, ACTION_RULE):
         if rule.startswith(prefix):
             return rule[len(prefix) :].partition(ALIAS)[0].replace("_", "-")
@@ -43,7 +43,7 @@ def word_of_rule(rule: str) -> str | None:
 
 
 def _phrases(prefix: str, words: Mapping[str, Predicate] | Mapping[str, Behaviour]) -> Iterator[tuple[str, str]]:
-    """Yield a rule name for each phrase of each word; textX needs a rule of its own for every phrase."""
+    """Yield each phrase of each word with a rule name, because textX needs a separate rule for every phrase."""
     for word in words.values():
         name = prefix + word.name.replace("-", "_")
         yield name, word.phrase

@@ -23,7 +23,7 @@ class Piece:
 
 
 def read_piece(language: str, text: str) -> Piece:
-    """Parse one piece of text; user text never raises."""
+    """Parse one piece of text. No text of a user raises an error."""
     parsed = parse_chunk(language, text)
     if isinstance(parsed, Parsed):
         return Piece(convert(parsed.declaration, text), (), parsed.trailing)
@@ -31,6 +31,6 @@ def read_piece(language: str, text: str) -> Piece:
     faults = tuple(fault_in(text, fault) for fault in recovered.faults)
     if recovered.parsed is None:
         return Piece(None, faults, None)
-    # Text appended by a repair is not the user's.
+    # A repair may have appended text that is not the user's.
     repaired = recovered.text[: len(text)]
     return Piece(convert(recovered.parsed.declaration, repaired), faults, recovered.parsed.trailing)

@@ -12,7 +12,7 @@ Argument = Ref | Name | Quantity | Number | Text
 
 @dataclass(frozen=True, slots=True)
 class PhraseUse(Node):
-    """A catalog phrase with the values of its slots: ``word`` is the predicate's or behaviour's name."""
+    """A catalog phrase with the values of its slots. ``word`` is the name of the predicate or behaviour."""
 
     word: str
     arguments: tuple[tuple[str, Argument], ...]

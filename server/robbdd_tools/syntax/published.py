@@ -1,9 +1,8 @@
 """Fill in what templates and variants in the published form omit: clause names, behaviour names and durations.
 
 A clause is named after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI and
-can be referred to; names used in the text are not generated again. A behaviour lasts from the event before which
-something is given until the event after which something holds, if these are certain; a scenario lasts as long as its
-behaviour.
+can be referred to. Names in the text are not generated again. A behaviour starts at the event of *before* in ``Given``
+and ends at the event of *after* in ``Then``, if these events are certain. A scenario lasts as long as its behaviour.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from robbdd_tools.syntax.time_tree import After, Before, During, TimeConstraint
 
 
 def unnamed_at(span: Span) -> Name:
-    """Return the placeholder for a missing clause name: empty, at the clause's start."""
+    """Return the placeholder for a missing clause name, which is an empty name at the start of the clause."""
     return Name(Span(span.start, span.start), "")
 
 
@@ -107,7 +106,7 @@ class _Namer:
                 return expression
 
     def _when(self, when: When, alone: Part | None) -> When:
-        """Return a When with all names. ``alone`` is its part of the body if there is no other one."""
+        """Return a When with all names. ``alone`` is its part of the body if the body has no other part."""
         first = self._behaviour(when.behaviour)
         if first.duration is None and not when.more and alone is not None:
             first = replace(first, duration=_duration(first, alone))
@@ -141,10 +140,10 @@ def _duration(behaviour: BehaviourUse, part: Part) -> During | None:
 
 
 def _bound(events: tuple[str, ...], bound: str, *groups: list[Ref]) -> Ref | None:
-    """Return the event in the text that is the first or the last one of a behaviour, called ``bound`` in the catalog.
+    """Return the event in the text that is the start or the end of a behaviour, called ``bound`` in the catalog.
 
-    It is the one with this name. Otherwise it is the only event, in the first group that has any, without the name of
-    another event of the behaviour; if there are several, it is uncertain.
+    It is the event with this name, if any. Otherwise, it is the only event in the first group that has any, or ``None``
+    if that group has several. Events with the names of the behaviour's other events are ignored.
     """
     meanings = [[(ref, inner_event(ref.path, events)) for ref in group] for group in groups]
     named = [ref for group in meanings for ref, meaning in group if meaning == bound]

@@ -2,8 +2,8 @@
 
 Each repair keeps the length of the text: a symbol replaces white space, a misspelt keyword is overwritten into the
 white space after it, and text that cannot be repaired is blanked. So every span of the tree is a span of the user's
-text. A repair is valid if the parser then gets beyond the error; the smallest one with which the whole chunk parses
-wins, otherwise the one with which the parser gets furthest.
+text. A repair is valid if the parser then gets beyond the error. The smallest repair with which the whole chunk parses
+is chosen or, if there is none, the repair with which the parser gets furthest.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from robbdd_tools.syntax.unknown_phrases import unknown_phrase
 
 MAX_FAULTS = 12
 MAX_PARSES = 48
-"""Maximum number of attempts per chunk: an editor needs a chunk's errors on each keystroke inside it."""
+"""Maximum number of attempts per chunk. It is small because an editor needs the errors after each keystroke."""
 ALIKE = 0.6
 """Similarity ratio from which a word counts as a misspelt keyword."""
 HOLE = "\u02ad"
-"""Placeholder for a missing name: a letter for the grammar, but one that no alphabet uses."""
+"""Placeholder for a missing name. The grammar reads it as a letter, but no alphabet uses it."""
 NOTHING = 'pred("")'
 """A predicate without content; no rule checks it."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
@@ -40,7 +40,7 @@ class Repair:
     """A repaired text, which has the same length as the original. ``span`` is the part that was changed.
 
     ``text`` is the fix to offer for that part; ``None`` if the part was blanked. ``title`` describes the fix; empty if
-    its text does. ``is_certain`` is true if no other repair is better, although it has no text.
+    the text does. ``is_certain`` is true if no other repair is better, although this one has no text.
     """
 
     repaired: str
@@ -60,7 +60,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """All errors found, and the repaired text with its parse result. The latter are ``None`` if no repair helped."""
+    """All errors found, the repaired text, and its parse result, which is ``None`` if no repair helped."""
 
     faults: tuple[Fault, ...]
     text: str
@@ -68,7 +68,7 @@ class Recovered:
 
 
 def recover(language: str, text: str, first: Rejected) -> Recovered:
-    """Repair a rejected chunk; user text never raises."""
+    """Repair a rejected chunk. No text of a user raises an error."""
     faults: list[Fault] = []
     repaired, result, left, shadow = text, first, MAX_PARSES, -1
     while len(faults) < MAX_FAULTS:
@@ -107,9 +107,8 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
     next_word = _word(text, own + len(text[own:]) - len(text[own:].lstrip())).end
     for parses, repair in enumerate(islice(_repairs(language, text, stopped), most), start=1):
         found = _parse(language, repair.repaired)
-        # Repaired text beats blanked text, however far the parser runs on after misreading the rest. An inserted symbol
-        # needs
-        # more evidence than a keyword: it may fit by chance.
+        # Repaired text beats blanked text, even if the parser then gets further by misreading the rest. An inserted
+        # symbol needs more evidence than a keyword, because it may fit by chance.
         enough = next_word if repair.span.start == repair.span.end else own
         if isinstance(found, Parsed) or ((repair.is_certain or repair.text is not None) and found.offset > enough):
             return _Step(repair, found, parses)
@@ -121,7 +120,7 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
 
 
 def _parse(language: str, text: str) -> Parsed | Rejected:
-    """Parse a repaired chunk; text after its end is an error, otherwise one extra bracket would repair everything."""
+    """Parse a repaired chunk. Text after its end is an error; otherwise one extra bracket would repair everything."""
     found = parse_chunk(language, text)
     if isinstance(found, Parsed) and found.trailing is not None:
         return Rejected(found.trailing, Expectation(frozenset(), frozenset()))
@@ -150,7 +149,7 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
 
 
 def _text_predicate(text: str, stopped: Rejected) -> Iterator[Repair]:
-    """Read a phrase that the catalog does not have as a text without content, so that the clause keeps its place."""
+    """Replace a phrase that the catalog lacks by a text without content, so that the clause keeps its place."""
     found = unknown_phrase(text, stopped)
     if found is not None and found.may_be_text and found.whole.end - found.whole.start >= len(NOTHING):
         blank = NOTHING.ljust(found.whole.end - found.whole.start)
@@ -166,7 +165,7 @@ def _single_values(text: str, offset: int) -> Iterator[Repair]:
 
 
 def _parentheses(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
-    """Put clauses joined by 'and' or 'or' into parentheses, unless both words occur: their order is ambiguous."""
+    """Put clauses joined by 'and' or 'or' into parentheses, unless both words occur, which would be ambiguous."""
     joined = joined_clauses(language, text, stopped)
     if joined is None or joined.end is None:
         return
@@ -189,8 +188,10 @@ def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
 
 
 def _behind_words(text: str, offset: int) -> int:
-    """Return the end of the last word or symbol before ``offset``; text inserted after a comment would become part of
-    it."""
+    """Return the end of the last word or symbol before ``offset``, but not in a comment.
+
+    Text that is inserted after a comment would become a part of the comment.
+    """
     found = (match for match in _COMMENTS.finditer(text, 0, offset) if match["comment"])
     comments = {match.start() + len(match[0].rstrip()): match.start() for match in found}
     place = len(text[:offset].rstrip())
@@ -222,7 +223,7 @@ def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
 
 
 def _continues(text: str, place: int) -> bool:
-    """Return whether a word that ends at ``place`` would be joined to the letter that follows."""
+    """Return whether a word that ends at ``place`` would run into the character that follows."""
     letter = text[place : place + 1] if place >= 0 else ""
     return letter.isalnum() or letter in {"_", "-"}
 
@@ -238,7 +239,7 @@ def _lines(text: str, offset: int, windows: tuple[tuple[int, int], ...]) -> Iter
 
 
 def _rest_of_brackets(text: str, offset: int) -> Iterator[Repair]:
-    """Blank the text from the error to the bracket that closes those around it, as after 'a and b' 'or c'."""
+    """Blank the text from the error up to the closing bracket around it, as for 'or c' in '( a and b or c )'."""
     depth = 0
     for match in _BRACKETS.finditer(text, offset):
         if match["open"]:
@@ -252,7 +253,7 @@ def _rest_of_brackets(text: str, offset: int) -> Iterator[Repair]:
 
 
 def _blocks(text: str, offset: int) -> Iterator[Repair]:
-    """Blank the brackets around the error with the line of their head, innermost first; never the outermost."""
+    """Blank brackets around the error with the line on which they open: innermost first, but never the outermost."""
     opened: list[int] = []
     around: list[tuple[int, int]] = []
     for match in _BRACKETS.finditer(text):

@@ -12,7 +12,7 @@ from robbdd_tools.syntax.recover import HOLE
 _NAME = r"(?P<name>[^\W\d][\w\-]*)"
 _ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
 _TARGET = r"(?P<target>[^\W\d][\w\-]*(?:\.[^\W\d][\w\-]*)*)"
-# An argument that lacks a symbol or a word.
+# An argument in which a symbol or a word is missing.
 _DAMAGED = r"(?:\(?[^(){}<>\n\"']*\)|\(\s*ns\s*=\s*[^\W\d][\w\-]*)\s*"
 _NAMED = rf"\s*(?:{_ARGUMENT}|{_DAMAGED})?{_NAME}"
 _HEADERS = (
@@ -42,7 +42,7 @@ _HEADERS = (
     (r"Scenario\s+Exec\b" + _NAMED, SymbolKind.EXECUTION),
     (rf"ns\s+{_NAME}(?P<ns>)", SymbolKind.NAMESPACE),
 )
-"""Patterns, which are compiled when a broken declaration is first read, and the kinds of what they declare."""
+"""Patterns of declarations, each with the kind of the declared name. They are compiled at the first broken one."""
 _WITHOUT_IRI = {SymbolKind.NAMESPACE, SymbolKind.TREE_TEMPLATE}
 _SCENARIO = re.compile(rf"\w+\s+(?:Variant\s+)?{_NAME}\s*{{")
 _PART = re.compile(
@@ -121,7 +121,7 @@ def _parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
 
 
 def _kinematic_parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
-    """Yield bodies, frames and the like; a part belongs to the last declaration above it that can contain it."""
+    """Yield bodies, frames and the like. A part belongs to the last declaration above that can contain such a part."""
     graph = body = frame = own.path
     for found in _KINEMATIC_PART.finditer(text, start):
         name, kind = found["name"], _KINEMATIC_PARTS[found["kind"]]

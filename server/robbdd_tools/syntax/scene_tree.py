@@ -131,7 +131,7 @@ class Where(Node):
 
 @dataclass(frozen=True, slots=True)
 class Link(Node):
-    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind.
+    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``. Its role states the kind.
 
     ``where`` selects elements of a set.
     """
@@ -142,7 +142,7 @@ class Link(Node):
 
 @dataclass(frozen=True, slots=True)
 class Property(Node):
-    """``mass: 0.2 kg``: what is known about an element. Several values are separated by commas."""
+    """``mass: 0.2 kg``: a fact about an element. Several values are separated by commas."""
 
     name: Name
     values: tuple[PropertyValue, ...]
@@ -157,7 +157,7 @@ class CorrectFor(Node):
 
 @dataclass(frozen=True, slots=True)
 class Member(Node):
-    """An object, workspace or agent inside its set. Only workspaces have ``CorrectFor`` among their details."""
+    """An object, workspace or agent inside its set. Only the details of workspaces contain ``CorrectFor``."""
 
     name: Name
     details: tuple[Property | CorrectFor, ...]

@@ -69,7 +69,7 @@ ModelSource = SystemPath | RosPath | PythonAttribute | CatalogEntry
 
 @dataclass(frozen=True, slots=True)
 class Mapping(Node):
-    """``map body <…> to "…"`` or ``map tree <…> to "…"``; without ``to`` the file has the same name."""
+    """``map body <…> to "…"`` or ``map tree <…> to "…"``. Without ``to``, the part has the same name in the file."""
 
     reference: Ref
     target: Text | None
@@ -89,7 +89,7 @@ class Gripper(Node):
 
 @dataclass(frozen=True, slots=True)
 class Opening(Node):
-    """``opening { joint: "…" closed: 5 mm open: 30 cm }``: of a drawer, a door, a lever."""
+    """``opening { joint: "…" closed: 5 mm open: 30 cm }``: how a drawer, a door or a lever opens."""
 
     joint: Text | None
     closed: Number | None

@@ -1,7 +1,7 @@
 """Find the names in a chunk without syntax errors, many times as fast as by parsing it.
 
-The grammar is compiled into regular expressions that match the same texts as the parser. Only rules that contain
-themselves, and repetitions of names, are functions, each of which joins a few expressions. No objects are made.
+The grammar is compiled into regular expressions that match the same texts as the parser. Only recursive rules and
+repetitions of names become functions, each of which combines a few expressions. No objects are created.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from robbdd_tools.syntax.grammar_files import ROOTS, grammar_text
 from robbdd_tools.syntax.peg import BLANK, literal_pattern
 
 NAME = "Name"
-"""The rule of each name that a declaration declares."""
+"""The grammar rule of the names that a declaration declares."""
 GENERATING = frozenset({"BareBehaviour", "BareFluent", "SimilarSet", "Subject", "UnnamedFluent"})
-"""Rules of declarations that also declare names that are not in their text, or before their own name."""
+"""Rules of declarations that also declare names that their text does not contain or has before their own name."""
 _GROUP = re.compile(r"(?<!\\)\((?!\?)")
 
 
@@ -34,7 +34,7 @@ class _State:
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """A regular expression that never matches in another way once it has matched. Its groups are names."""
+    """A regular expression without backtracking: its first match is final. Its groups are names."""
 
     text: str
     has_names: bool = False
@@ -48,7 +48,7 @@ _BLANKS = _Pattern(f"(?>{BLANK})")
 
 
 class _Generated(Exception):
-    """The text declares generated names."""
+    """The text declares names by a ``GENERATING`` rule."""
 
 
 def sound_names(language: str, text: str) -> tuple[str, ...] | None:
@@ -89,7 +89,7 @@ class _Compiler:
         self._made: dict[str, Match] = {}
 
     def pieces(self, expression: grammar.Expression) -> list[Piece]:
-        """Return the parts of an expression in a row."""
+        """Return the sequence of pieces that matches an expression."""
         match expression:
             case grammar.Literal(text):
                 return [_BLANKS, _Pattern(literal_pattern(text))]
@@ -164,7 +164,7 @@ def _reached(rule: str, uses: Mapping[str, Set[str]]) -> set[str]:
 
 
 def _joined(pieces: Sequence[Piece]) -> Match:
-    """Return the function that matches pieces in a row. Expressions in a row become one."""
+    """Return the function that matches a sequence of pieces. Adjacent regular expressions are joined."""
     matches: list[Match] = []
     for are_patterns, group in groupby(pieces, key=lambda piece: isinstance(piece, _Pattern)):
         found = list(group)
@@ -232,7 +232,7 @@ def _choice(options: Sequence[Sequence[Piece]]) -> Piece:
 
 
 def _alternatives(options: Sequence[Sequence[_Pattern]]) -> str:
-    """Return an expression that matches the first option that fits. Options that begin alike share their beginning."""
+    """Return an expression that matches the first fitting option. Options with the same beginning share it."""
     parts: list[str] = []
     for first, group in groupby(options, key=lambda option: option[:1]):
         found = list(group)
@@ -254,7 +254,7 @@ def _optional(pieces: Sequence[Piece]) -> Piece:
 
 
 def _repeated(pieces: Sequence[Piece]) -> Piece:
-    # A group of an expression has its last match only.
+    # A repeated group keeps only its last match, so names cannot be repeated by an expression.
     if _is_text(pieces) and not _has_names(pieces):
         return _Pattern(f"(?>(?:{_text(pieces)})*)")
     part = _joined(pieces)

@@ -85,8 +85,8 @@ def _chunks(text: str, starts: list[int]) -> tuple[Chunk, ...]:
 def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tuple[Chunk, ...]:
     """Return ``split(language, new)``, given the chunks of ``old``: only the text around the edit is scanned.
 
-    Chunks before the one before the edited chunk, whose end may have moved, stay the same; so do those after the first
-    start of an old chunk after the edit.
+    The edited chunk and the one before it, whose end may have moved, are made again. Earlier chunks stay the same, and
+    so do later chunks from the first old start that is found again.
     """
     edited, behind_edit = edited_part(old, new)
     first = bisect_left(chunks, edited, key=lambda chunk: chunk.offset) - 2
@@ -129,8 +129,8 @@ def _scanner(language: str) -> re.Pattern[str]:
 class Scan:
     """The starts of all chunks of a text, and the splitter's states.
 
-    ``marks`` are the offsets behind all brackets, and ``depths`` the numbers of open brackets there. No token extends
-    over a bracket, so behind one the splitter depends on the depth and on the text that follows only.
+    ``marks`` are the offsets just after each bracket, and ``depths`` are the numbers of open brackets there. No token
+    extends over a bracket, so from a mark on, the result depends only on the depth and on the following text.
     """
 
     text: str
@@ -169,14 +169,14 @@ def scanned(language: str, text: str, edit: tuple[str, int, int] | None = None) 
 
 
 def _until(known: Scan, edited: int, text: str) -> Scan:
-    """Return the part of a scan up to the last bracket before the edit that leads to another text."""
+    """Return the part of a known scan up to the last bracket before the edit, as the start of the scan of ``text``."""
     count = bisect_right(known.marks, edited)
     end = known.marks[count - 1] if count else 0
     return Scan(text, known.starts[: bisect_left(known.starts, end)], known.marks[:count], known.depths[:count])
 
 
 def _continue(language: str, scan: Scan, known: Scan | None = None, edit_end: int = 0) -> None:
-    """Complete a scan, at most to the first bracket after the edit of a known scan that has the same depth there."""
+    """Complete a scan. After the edit, the known scan is used from the first bracket at which it has the same depth."""
     text, starts, marks, depths = scan.text, scan.starts, scan.marks, scan.depths
     position, depth = (marks[-1], depths[-1]) if marks else (0, 0)
     shift = 0 if known is None else len(text) - len(known.text)

@@ -1,8 +1,8 @@
-"""Parse a user story scenario by scenario, so that an edit inside one parses only that one, however long the story is.
+"""Parse a user story scenario by scenario. After an edit inside a scenario, only this scenario is parsed again.
 
-The story's text is cut at its scenarios. The text around them is parsed with a placeholder for them, and each scenario
-by itself; both are cached by text. The result equals that of parsing the whole story, because no scenario affects how
-another one is parsed; an error stays within its scenario.
+The text of the story is cut at its scenarios. The text around them is parsed with a placeholder for them, and each
+scenario is parsed by itself. Both are cached by text. The result is the same as for the whole story at once, because no
+scenario affects how another one is parsed. An error stays within its scenario.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
 CACHED_FRAMES = 100
 CACHED_LETTERS = 30_000
-"""Characters of scenarios that are kept in addition to the story parsed last, whatever its length."""
+"""Scenarios of so many characters stay cached, in addition to those of the story that was parsed last."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _WORD = "Scenario"
 _NAMELESS = re.compile(rf"{_WORD}\s*{{")
@@ -134,7 +134,7 @@ def _frame(head: str, tail: str) -> _Frame:
 
 
 def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
-    """Return a fault of a frame at its place in the whole story."""
+    """Move a fault of a story's frame to its place in the whole story."""
     start = _unframed(fault.span.start, cut)
     span = Span(start, start + fault.span.end - fault.span.start)
     if fault.span.start == len(cut.head):
@@ -162,7 +162,7 @@ def _unframed(offset: int, cut: Cut) -> int:
 
 
 def _scenarios(key: Key) -> tuple[Placed, ...]:
-    """Parse a text that starts with a scenario; text after its end may be another scenario."""
+    """Parse a text that starts with a scenario. After its end, the text may contain another scenario."""
     text, path, namespace = key
     found: list[Placed] = []
     start = 0
@@ -178,7 +178,7 @@ def _scenarios(key: Key) -> tuple[Placed, ...]:
 
 
 def _read_scenario(text: str) -> Piece:
-    """Parse a text that starts with a scenario; a name not yet typed is replaced by a placeholder."""
+    """Parse a text that starts with a scenario. If its name is not typed yet, a placeholder replaces it."""
     nameless = _NAMELESS.match(text)
     if nameless is None:
         return read_piece("scenario", text)

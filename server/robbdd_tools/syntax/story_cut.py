@@ -48,10 +48,10 @@ class Cut:
 
 
 def cut_story(text: str) -> Cut | None:
-    """Return the parts of a story, ``None`` if the text is not a story with scenarios.
+    """Return the parts of a story, or ``None`` if the text is not a story with scenarios.
 
-    A scenario starts at its keyword directly inside the story's braces or, with its name and brace, at the beginning of
-    any line: a missing brace then breaks one scenario.
+    A scenario starts at its keyword directly inside the story's braces. With its name and brace, it also starts at the
+    beginning of any line, so a missing brace breaks only one scenario.
     """
     if not _STORY.match(text):
         return None
@@ -68,8 +68,8 @@ def cut_story(text: str) -> Cut | None:
 class _Scan:
     """The starts of the scenarios in a text, and the offset of the brace that closes the story.
 
-    ``marks`` are the offsets behind the headers of scenarios, and ``counts`` the numbers of starts up to there. Behind
-    a header, the scan depends on the text that follows only.
+    ``marks`` are the offsets just after the headers of scenarios, and ``counts`` are the numbers of starts up to there.
+    From a mark on, the scan depends only on the following text.
     """
 
     text: str
@@ -83,7 +83,7 @@ _latest_scan: _Scan | None = None
 
 
 def _scan_story(text: str, known: _Scan | None) -> _Scan:
-    """Return the scan of a text. Only the part is scanned in which it differs from the text of a known scan."""
+    """Return the scan of a text. Only the part that differs from the text of the known scan is scanned."""
     scan = _Scan(text, [], [], [], None)
     depth, position, edit_end, shift = 0, 0, 0, 0
     if known is not None:
@@ -112,7 +112,7 @@ def _scan_story(text: str, known: _Scan | None) -> _Scan:
 
 
 def _goes_on(scan: _Scan, known: _Scan, shift: int) -> bool:
-    """Complete a scan if a known one has the same header at the same place behind the edit."""
+    """Complete a scan with the rest of a known one, if that has a header at the same place after the edit."""
     index = bisect_left(known.marks, scan.marks[-1] - shift)
     if known.marks[index : index + 1] != [scan.marks[-1] - shift]:
         return False
@@ -131,9 +131,9 @@ def forget_scan() -> None:
 
 
 def quotes_cuts(text: str) -> bool:
-    """Return whether a multi-line string contains a brace or *Scenario*, which ``cut_story`` takes for a scenario's.
+    """Return whether a multi-line string contains a brace or *Scenario*, which would mislead ``cut_story``.
 
-    An unclosed quote, as while typing, looks the same.
+    A quote that is not closed yet has the same effect.
     """
     return any("\n" in match[0] and _CUTTING.search(match[0]) for match in _LONG_STRINGS.finditer(text))
 
@@ -144,7 +144,7 @@ def _starts_line(text: str, offset: int) -> bool:
 
 
 def _closing_line(text: str, start: int) -> int:
-    """Return where a story with too few braces is closed: at a brace further left than its last scenario."""
+    """Return the end of a story with too few closing braces: the first brace further left than its last scenario."""
     if _starts_line(text, start):
         column = start - text.rfind("\n", 0, start) - 1
         for line in re.finditer(r"^([ \t]*)}", text[start:], re.MULTILINE):

@@ -7,24 +7,24 @@ from dataclasses import dataclass, field
 from robbdd_tools.base.document import Span
 
 STUDY = "study"
-"""The ending of the names of studies, without the dot."""
+"""File extension of studies, without the dot."""
 MOST_REPETITIONS = 1_000_000
-"""Limit of ``repeat``, ``first`` and ``sample``."""
+"""Maximum value of ``repeat``, ``first`` and ``sample``."""
 MOST_BATCH = 10_000
-"""Limit of ``batch``: the scenarios of a batch are in memory."""
+"""Maximum value of ``batch``. The scenarios of a batch are all in memory."""
 MOST_SEED = 2**63 - 1
-"""Limit of a seed: the results are stored in 64 bits."""
+"""Maximum value of a seed. The results are stored in 64 bits."""
 MOST_SECONDS = 1_000_000
-"""Limit of ``timeout`` in s."""
+"""Maximum value of ``timeout`` in s."""
 LATIN, SOBOL, GRID = "latin-hypercube", "sobol", "grid"
 DESIGNS = (LATIN, SOBOL, GRID)
-"""The designs of ranges."""
+"""Designs that choose the values of ranges."""
 FAILURES, ALL = "failures", "all"
-"""The executions whose traces a study can keep."""
+"""A study can keep the traces of these executions."""
 MOST_TRACES = 1_000_000
-"""Limit of the size of kept traces in MB."""
+"""Maximum size of all kept traces in MB."""
 MOST_POINTS = 100_000
-"""Limit of the points of a design."""
+"""Maximum number of points of a design."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +68,9 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """Where the values of ranges are taken. ``kind`` is one of ``DESIGNS``.
+    """The rule that chooses the values of ranges. ``kind`` is one of ``DESIGNS``.
 
-    ``size`` is the number of points; of a ``grid``, the number of levels of each range.
+    ``size`` is the number of points. For a ``grid``, it is the number of levels of each range.
     """
 
     kind: str
@@ -80,9 +80,9 @@ class Design:
 
 @dataclass(frozen=True, slots=True)
 class KeptTraces:
-    """The traces that a study keeps: those of all executions or, if ``failures``, of those that do not hold.
+    """The traces that a study keeps. If ``failures`` is true, these are only traces of executions that do not hold.
 
-    ``limit`` is the size of all of them in MB (1e6 bytes).
+    ``limit`` is the maximum size of all traces together in MB (1e6 bytes).
     """
 
     failures: bool
@@ -91,12 +91,12 @@ class KeptTraces:
 
 @dataclass(slots=True)
 class StudyText:
-    """The contents of a ``.study`` file. ``numbers`` has the settings with a number by their names."""
+    """The contents of a ``.study`` file. ``numbers`` maps the name of each numeric setting to its value."""
 
     imports: list[Word] = field(default_factory=list[Word])
     name: str = ""
     head: Span = field(default_factory=lambda: Span(0, 0))
-    """The place of the name; empty if there is none."""
+    """The place of the study's name; empty if it has none."""
     scenarios: tuple[Word, ...] = ()
     where: Word | None = None
     factors: list[Factor] = field(default_factory=list[Factor])
@@ -107,14 +107,14 @@ class StudyText:
     """Whether all executions of one repetition have the same seed."""
     numbers: dict[str, float] = field(default_factory=dict[str, float])
     places: dict[str, Span] = field(default_factory=dict[str, Span])
-    """The places of the names of settings."""
+    """Name of a setting → its place."""
 
     @property
     def scenes(self) -> tuple[Word, ...]:
-        """The files whose scene instances are levels of a factor."""
+        """The files with the scene instances that are levels of a factor."""
         return tuple(level for one in self.factors if one.implementation is None for level in one.levels)
 
     def whole(self, name: str) -> int | None:
-        """Return a setting that is a whole number; ``None`` if it is missing."""
+        """Return the value of a setting that is a whole number, or ``None`` if it is missing."""
         found = self.numbers.get(name)
         return None if found is None else int(found)

@@ -1,4 +1,4 @@
-"""The settings of a study that are numbers."""
+"""The numeric settings of a study."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robbdd_tools.syntax.study_content import MOST_BATCH, MOST_REPETITIONS, MOST
 
 
 class NumberRange(NamedTuple):
-    """The permitted values of a setting, bounds included, and the unit that follows."""
+    """The permitted values of a setting, including both bounds, and the unit after the number."""
 
     least: int
     most: int
@@ -26,4 +26,4 @@ NUMBERS: Mapping[str, NumberRange] = {
     "batch": NumberRange(1, MOST_BATCH),
     "timeout": NumberRange(0, MOST_SECONDS, is_whole=False, unit="seconds"),
 }
-"""Settings of a study with a number, by their names."""
+"""Name of a numeric setting → its permitted values."""

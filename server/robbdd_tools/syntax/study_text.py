@@ -53,13 +53,13 @@ class _Unexpected(Exception):
 
 
 REDUCING = ("first", "sample", "pairwise")
-"""Settings of which a study has at most one."""
+"""Settings that reduce the number of scenarios. A study may have only one of them."""
 SETTINGS = ("scenarios", "where", *NUMBERS, "stop", "block", "traces", "design", "factor")
 """The words that begin a setting."""
 
 
 def read_study(document: Document) -> tuple[StudyText, list[Diagnostic]]:
-    """Return the contents of a study as far as they can be read, and the errors of its form."""
+    """Return the readable contents of a study, and its syntax errors."""
     reader = _Reader(document)
     return reader.read(), reader.faults
 
@@ -177,7 +177,7 @@ class _Reader:
         self._found.ranges.append(Range(variable, low, high, high_unit, span))
 
     def _quantity(self) -> tuple[float, str]:
-        """Read a number with its unit, if it has one; the name of the next setting is no unit."""
+        """Read a number and its unit, if any. The name of the next setting is not a unit."""
         number = self._kind("number", "a number")
         unit = ""
         following = self._tokens[min(self._next + 1, len(self._tokens) - 1)]

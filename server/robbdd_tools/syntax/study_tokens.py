@@ -15,7 +15,7 @@ _TOKEN = re.compile(
 
 
 class Token(NamedTuple):
-    """A token of a study: white space and comments are left out, and the last one has the kind ``end``."""
+    """A token of a study. White space and comments are not tokens. The last token has the kind ``end``."""
 
     kind: str
     text: str

@@ -13,7 +13,7 @@ from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.scene_tree import field_names
 
 MAX_COPIES = 10_000
-"""Maximum number of named members of a ``similar`` set; a larger count is a typing error."""
+"""Maximum number of named members of a ``similar`` set. A larger count is assumed to be a typing error."""
 
 _SETS = {
     "object": SymbolKind.OBJECT_SET,

@@ -15,7 +15,7 @@ from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 
 def parse_with_textx(language: str, text: str) -> Parsed | Rejected:
-    """Parse with textX what ``parse_chunk`` parses."""
+    """Do the same as ``parse_chunk`` by textX."""
     textx: Any = import_module("textx")
     try:
         chunk = _metamodel(language).model_from_str(text)

@@ -20,7 +20,7 @@ _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 
 def convert(raw: RawNode, text: str) -> Any:
-    """Return the tree node of a parser's object for ``text``, which repairs may have extended."""
+    """Convert a parser's object to a tree node. ``text`` is the parsed text, which repairs may have extended."""
     checkpoint()
     rule = type(raw).__name__
     span = Span(min(raw._tx_position, len(text)), min(raw._tx_position_end, len(text)))
@@ -54,7 +54,7 @@ def _value(value: Any, text: str) -> Any:
 
 
 def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Argument], ...]:
-    """Return the slots in written order."""
+    """Return the slots of a phrase with their values, in written order."""
     fields_of_raw = cast(dict[str, Any], vars(raw))
     slots: list[tuple[str, tree.Argument]] = [
         (name, convert(value, text)) for name, value in fields_of_raw.items() if name[0] != "_" and name != "parent"
@@ -81,7 +81,7 @@ def _quantity(raw: RawNode, span: Span, _: str) -> tree.Quantity:
 
 
 def _inner(field: str) -> Callable[[RawNode, Span, str], Any]:
-    """Return a converter for a rule that consists of one of its parts and keywords around it."""
+    """Return a converter for a rule that consists of a single part with keywords around it."""
     return lambda raw, _, text: _value(getattr(raw, field), text)
 
 
@@ -90,7 +90,7 @@ def _given(node: type[tree.Node], **given: Any) -> Callable[[RawNode, Span, str]
 
 
 def _clauses(raw: RawNode, span: Span, text: str) -> tree.Expression:
-    """Join several clauses in a row by *and*."""
+    """Join a sequence of clauses by *and*."""
     found: tuple[tree.Expression, ...] = _value(raw.clauses, text)
     return found[0] if len(found) == 1 else tree.Conjunction(span, found)
 

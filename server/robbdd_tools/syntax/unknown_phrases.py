@@ -1,4 +1,4 @@
-"""Phrases that the catalog does not have: the nearest ones, and the words that users write for them."""
+"""Find the catalog phrases that are nearest to an unknown phrase. Synonyms of their words count, too."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 MAX_NEAREST = 3
 """Maximum number of phrases that a message lists."""
 NEAR = 0.6
-"""Similarity ratio from which a phrase is listed."""
+"""Minimum similarity ratio of a listed phrase."""
 _SYNONYM = 0.75
-"""Similarity of a phrase by a synonym. A phrase with a spelling mistake is nearer."""
+"""Similarity of a phrase that is found by a synonym. A phrase with a spelling mistake is nearer."""
 _SAME_SLOTS = 0.1
-"""Added to the similarity of a phrase with the same kinds of slots in the same order."""
+"""This is added to the similarity of a phrase that has the same kinds of slots in the same order."""
 LONGEST = 300
 """Maximum number of characters between ``holds(`` and an error."""
 _WHOLE_WORD = r"(?<![\w\-]){}(?![\w\-])"
@@ -40,10 +40,11 @@ _AMOUNT = re.compile(r"[#$](\w+)")
 
 @dataclass(frozen=True, slots=True)
 class UnknownPhrase:
-    """A phrase in a clause that is none of the catalog.
+    """A phrase in a clause that the catalog does not contain.
 
-    ``whole`` is its place with its subject, and ``words`` its place without it. ``nearest`` are the phrases that it may
-    mean, the most likely first. ``fix`` is the text that replaces ``words``, if it is certain where the values belong.
+    ``whole`` is its place including its subject, and ``words`` is its place without the subject. ``nearest`` are the
+    phrases that it may mean, the most likely first. ``fix`` is the text that replaces ``words``, if it is certain where
+    the values belong.
     ``may_be_text`` is true if the grammar accepts a text predicate at its place.
     """
 
@@ -93,7 +94,7 @@ def phrase_fault(text: str, rejected: Rejected) -> SyntaxFault | None:
 
 
 def _is_in_phrase(expected: frozenset[str]) -> bool:
-    """Return whether words of phrases are expected, and neither a value nor the end of a phrase."""
+    """Return whether the parser expects words of phrases, but neither a value nor the end of a phrase."""
     return not expected.isdisjoint(_words_of_catalog()) and expected.isdisjoint({",", "<", "holds"})
 
 
@@ -105,7 +106,7 @@ def _words_of_catalog() -> frozenset[str]:
 
 @cache
 def _phrases() -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Return the phrases of predicates that begin with a subject, with their synonyms."""
+    """Return the phrases of predicates that begin with a subject, each with its synonyms."""
     every = ((one, word) for word in load_catalog().predicates.values() for one in (word.phrase, *word.aliases))
     return tuple((phrase, tuple(map(str, word.synonyms))) for phrase, word in every if phrase.startswith("<"))
 
