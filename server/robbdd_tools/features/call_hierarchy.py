@@ -23,7 +23,7 @@ _CALLABLE = (SymbolKind.STORY, SymbolKind.VARIANT, SymbolKind.TEMPLATE, SymbolKi
 class Call:
     """One entry of a call hierarchy: the caller or the called declaration, and the places of the calls.
 
-    The places are absolute and in the document of the caller.
+    The places are absolute positions in the document of the caller.
     """
 
     other: Definition

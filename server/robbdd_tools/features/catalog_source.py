@@ -24,7 +24,7 @@ def source_of(entry: object) -> Path | None:
     load_catalog()
     for _, module in sorted(sys.modules.items()):
         path = getattr(module, "__file__", None)
-        # A package may re-export the contents of its modules; the entry's own file has the longer name.
+        # A package may re-export the contents of its modules. The module that defines the entry has the longest name.
         if path and any(value is entry for value in vars(module).values()) and not path.endswith("__init__.py"):
             return Path(path)
     return None

@@ -25,8 +25,8 @@ def operands(expression: tree.Expression) -> tuple[tree.Expression, ...]:
 def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
     """Yield the spans to delete in order to remove some operands of a conjunction.
 
-    ``gone`` marks the operands to remove; at least one operand must remain. Each span includes the ``and`` that would
-    become superfluous.
+    ``gone`` marks the operands to remove. At least one operand must remain. Each span includes the ``and`` that is no
+    longer needed.
     """
     first_kept = gone.index(False)
     for position, span in enumerate(spans):
@@ -60,7 +60,7 @@ def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> 
 
 
 def changed(text: str, span: Span, changes: Iterable[Change]) -> str:
-    """Return a span of a text after some changes. The spans of the changes count from the start of the text."""
+    """Return the place of a span after some changes of the text. Their spans count from the start of the text."""
     piece = text[: span.end]
     for place, new in sorted(changes, key=lambda change: change[0], reverse=True):
         piece = piece[: place.start] + new + piece[place.end :]

@@ -41,7 +41,7 @@ class ResultHint:
     - ``vacuous``: the reason why the clause could not have failed.
     - ``substitutions``: the catalog behaviours that were executed instead of the model's, and the chosen
       scene instances.
-    - ``rejudged``: the result of stored traces on the edited clause; no execution has shown it.
+    - ``rejudged``: the result of stored traces on the edited clause. No execution has judged the edited clause yet.
     - ``iri``: the IRI of the clause; empty for a table row.
     """
 
@@ -60,12 +60,12 @@ class ResultHint:
 
     @property
     def is_consequence(self) -> bool:
-        """Whether the clause is unknown in some executions, and each time only because of another clause."""
+        """Whether the clause is unknown in some executions, and in each of them only because of another clause."""
         return bool(self.failing) and all(judgement.because for _, judgement in self.failing)
 
     @property
     def reason(self) -> str:
-        """Why the clause does not hold in its worst execution; empty if the margin says it, or another clause."""
+        """Why the clause does not hold in its worst execution; empty if the margin or another clause is the reason."""
         if self.worst is None or self.rejudged is not None or self.is_consequence:
             return ""
         # The verdict follows in brackets.
@@ -82,7 +82,7 @@ class ResultHint:
 
 @dataclass(frozen=True, slots=True)
 class PassRate:
-    """The number of a variant's scenarios that passed and of those that were run. ``outcome`` is the worst outcome."""
+    """The numbers of a variant's scenarios that passed and that were run. ``outcome`` is the worst outcome."""
 
     passed: int
     run: int
@@ -96,7 +96,7 @@ class PassRate:
 
 
 def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
-    """Return the data by which clients colour a result."""
+    """Return the data that clients need to colour a result."""
     found: dict[str, Any] = {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
     if isinstance(shown, ResultHint):
         found |= {"rejudged": True} if shown.rejudged is not None else {}
@@ -159,7 +159,7 @@ def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Fin
 
 
 def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
-    """Return the pass rate of scenarios. Each scenario is given with whether its run judged the current text."""
+    """Return the pass rate of scenarios. Each one has a flag that is true if its run judged the current text."""
     finished = [(one.outcome, current) for one, current in scenarios if one.finished]
     if not finished:
         return None
@@ -171,10 +171,10 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
     """Return a diagnostic for each clause that did not hold in some variation.
 
-    Clauses whose text has changed since the run have none. A clause that is unknown only because of others has none
-    either: the diagnostics of those have the number of such clauses and link to them.
+    Clauses whose text has changed since the run have none. A clause that is unknown only because of other clauses has
+    none either. Instead, the diagnostics of these clauses state the number of their consequences and link to them.
 
-    A diagnostic begins with the worst reason, then lists the worst variations with their instants, and links to their
+    A diagnostic begins with the worst reason. Then it lists the worst variations with their instants and links to their
     table rows. If it is ``brief``, it names only the worst variation, because a hover below it shows the full list.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
@@ -188,7 +188,7 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.head, Severity.HINT, "clause-vacuous", message))
-        # An error in users' code is reported at the code, not at every clause that is unknown because of it.
+        # An error in users' code is reported at the code's name, not at every clause that is unknown because of it.
         failing = sorted(_without_faults(hint), key=lambda judged: judged[1].because != "")
         others = followers.get(hint.iri, [])
         if failing and not hint.stale and hint.iri not in folded:
@@ -211,7 +211,7 @@ def _without_faults(hint: ResultHint) -> list[Judged]:
 def _rejudged_diagnostic(uri: str, hint: ResultHint, rejudged: RejudgedResult, most: int) -> Iterator[Diagnostic]:
     """Yield a diagnostic if stored traces do not all satisfy an edited clause, or if some of them flip.
 
-    ``most`` is the maximum number of executions in it.
+    ``most`` is the maximum number of executions that it lists.
     """
     if not rejudged.usable or (rejudged.outcome == "holds" and not rejudged.flipped):
         return
@@ -221,7 +221,7 @@ def _rejudged_diagnostic(uri: str, hint: ResultHint, rejudged: RejudgedResult, m
 
 
 def _followers(hints: Sequence[ResultHint]) -> dict[str, list[ResultHint]]:
-    """Return for each clause, by IRI, the clauses that are unknown only because of it and of other clauses shown."""
+    """Return, by the IRI of each cause, the clauses that are unknown only because of clauses with shown results."""
     shown = {hint.iri for hint in hints if not hint.stale}
     found: dict[str, list[ResultHint]] = {}
     for hint in hints:
@@ -233,9 +233,9 @@ def _followers(hints: Sequence[ResultHint]) -> dict[str, list[ResultHint]]:
 
 
 def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int, others: int) -> str:
-    """Return the text of a clause's failures. The first line has the reason of the worst, since clients may cut there.
+    """Return the text of a clause's failures. Clients may show only the first line, so it has the worst reason.
 
-    ``most`` is the maximum number of variations in it, ``others`` the number of clauses unknown because of this one.
+    ``most`` is the maximum number of listed variations. ``others`` clauses are unknown because of this one.
     """
     scenario, worst = failing[0]
     reason = worst.failure or worst.said
@@ -250,7 +250,7 @@ def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int, oth
 
 
 def _rows(snapshot: Snapshot, uri: str) -> dict[tuple[str, str], Span]:
-    """Return the table rows of a file, by variant and digest."""
+    """Return the table rows of a file by the variant's IRI and the digest of the row."""
     return {
         (variant.iri, digest(snapshot, uri, row)): row for variant in variants_of(snapshot, uri) for row in variant.rows
     }
@@ -322,7 +322,7 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
-    """Return a text for each distinct choice of the user: substitutions of behaviours, scene instances, worlds."""
+    """Return a text for each distinct choice of the user: substituted behaviours, chosen scene instances and worlds."""
     found = (one for scenario in scenarios for one in (scenario.substitution, scenario.scene_instance, scenario.world))
     return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 

@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
 _STARTS = frozenset({"import", "ns"})
 _CLAUSE = frozenset({"(", "<", "holds"})
-"""The grammar accepts a clause where it accepts these."""
+"""At a place where the grammar accepts all of these, it accepts a clause."""
 
 
 def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | None = None) -> list[Completion]:
     """Return the proposals at a cursor: first keywords, then names, each group in alphabetical order.
 
-    Variables whose type does not fit the slot are last. Values are left out if their type does not fit their variable,
-    or if the scene of their variant does not contain them. Names in files that are not yet imported are proposed
-    together with the import.
+    Variables whose type does not fit the slot are last. Values are left out if their type does not fit the variable, or
+    if the scene of the variant does not contain them. Names in files that are not yet imported are proposed together
+    with the import.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -82,7 +82,7 @@ def _words(names: Names, language: str, place: Place) -> Iterator[Completion]:
 
 
 def _connectives(names: Names, language: str, place: Place) -> Iterator[Completion]:
-    """Yield 'and' and 'or' after a clause without parentheses, and 'not' before one, with the missing parenthesis."""
+    """Yield 'and', 'or' and 'not' at clauses without parentheses, together with the missing opening parenthesis."""
     assert place.expected is not None
     before, span, uri = names.cursor.before, names.cursor.span, names.file.document.uri
     if not place.expected.literals >= _CLAUSE:

@@ -19,7 +19,7 @@ _MORE = re.compile(r"[^\w\s]|\n")
 """Text after the first words of a declaration."""
 _VARIANT = re.compile(r"(?<![\w\-.<])Scenario\s+(?!Template\b)([^\W\d][\w\-]*)\s*\{")
 _BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]*)\s*\{")
-"""Start of a block with names inside a kinematic tree or a scene instance."""
+"""Pattern of the start of a block inside a kinematic tree or a scene instance. Names are inside such a block."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,8 @@ def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
 def _enclosing(analysis: FileAnalysis, offset: int) -> PlacedDeclaration | None:
     """Return the declaration at an offset.
 
-    In a scene, ``obj set`` without a name begins a declaration for the splitter. If it is indented and the braces
-    before it are open, it is a part of the declaration before it.
+    In a scene, the splitter takes ``obj set`` without a name for the start of a declaration. If it is indented and the
+    braces before it are open, it belongs to the declaration before it.
     """
     end = bisect_right(analysis.declarations, offset, key=lambda entry: entry.offset)
     found = analysis.declarations[max(0, end - 2) : end]

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
-"""Kind of a behaviour tree's composite → the result of a child that ends it."""
+"""Kind of a composite in a behaviour tree → the result of a child that ends the composite."""
 _QUOTED = {
     SymbolKind.COMPOSITION,
     SymbolKind.DISTRIBUTION,
@@ -72,7 +72,7 @@ _QUOTED = {
     SymbolKind.POLICY,
     SymbolKind.EXECUTION,
 }
-"""Kinds described by their source text."""
+"""Kinds that are described by their source text."""
 _COMPLETE = {
     SymbolKind.FLUENT,
     SymbolKind.BEHAVIOUR,
@@ -86,7 +86,7 @@ _COMPLETE = {
     SymbolKind.SENSOR,
     SymbolKind.EXECUTION,
 }
-"""Kinds that need no use."""
+"""Kinds whose names need not be used, so *not used* is not shown for them."""
 
 
 def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NOTHING) -> str:
@@ -105,7 +105,7 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
 
 
 def describe_path(snapshot: Snapshot, uri: str, path: str) -> str | None:
-    """Describe a qualified name declared in a file of the project."""
+    """Describe a qualified name that a file of the project declares."""
     analysis = snapshot.file(uri)
     definition = None if analysis is None else analysis.definitions.get(path)
     return None if definition is None else describe(snapshot, definition)
@@ -315,7 +315,7 @@ def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
 
 
 def _listed(names: list[str], count: int = 0) -> str:
-    """Return the first of some names, and how many more there are; ``count`` is their number if it is larger."""
+    """Return the first names, and the number of others. ``count`` is the total number if ``names`` is not complete."""
     left = max(count, len(names)) - MAX_LISTED
     more = f" and {left} more" if left > 0 else ""
     return f"{', '.join(names[:MAX_LISTED])}{more}"

@@ -22,7 +22,7 @@ MEANING = (
 
 
 def describe_predicate(site: Site | None) -> Iterator[str]:
-    """Yield the phrase of a named predicate with its definition, what its parameters take, and how it is judged."""
+    """Yield the phrase of a named predicate with its definition, the values of its parameters, and how it is judged."""
     if site is None or not isinstance(site.tree, tree.NamedPredicate):
         return
     yield f"> {literal(written_phrase(site.tree))} means: {literal(state_sentence(site.tree.body))}"

@@ -34,7 +34,7 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
         return []
     if is_study(uri):
         return read_study(analysis.document)[1]
-    # Repairs that fail one after another at the end of a text give the same message with different fixes.
+    # If several repairs fail at the end of a text, they give the same message with different fixes.
     first: dict[object, Diagnostic] = {}
     for found in (*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)):
         first.setdefault((found.span, found.code, found.message, found.related), found)
@@ -51,9 +51,9 @@ def shape_diagnostics(
 ) -> list[Diagnostic]:
     """Return the SHACL diagnostics of the graph of a file and its imports. Each diagnostic names its own file.
 
-    Those that a fast rule reports at the same place are left out. ``shapes`` are added to the project's. A
-    ``validation`` that knows an earlier revision checks only the changes since, and raises ``Superseded`` when it is
-    outdated. All declarations of the imported files ``together`` are validated as well.
+    Mistakes that a fast rule reports at the same place are left out. ``shapes`` are added to the project's shapes. A
+    ``validation`` that knows an earlier revision checks only what has changed since, and raises ``Superseded`` if a
+    newer revision is waiting. All declarations of the imported files ``together`` are also validated.
     """
     from robbdd_tools.base.graph_formats import graph_format
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
@@ -89,7 +89,7 @@ def text_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
 def all_diagnostics(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> list[Diagnostic]:
     """Return every diagnostic of a file and its imports, sorted by file and place.
 
-    ``together``: files that import each other, among them this one, which are validated together.
+    ``together`` are files that import each other, including this one. They are validated together.
     """
     found = dict.fromkeys((*text_diagnostics(snapshot, uri), *shape_diagnostics(snapshot, uri, together=together)))
     return sorted(found, key=lambda diagnostic: (diagnostic.uri != uri, sort_key(diagnostic)))

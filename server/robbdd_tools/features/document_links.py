@@ -52,5 +52,5 @@ def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
     except (OSError, ValueError):
-        # An invalid file name.
+        # The file name is invalid.
         return False

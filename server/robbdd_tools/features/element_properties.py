@@ -25,13 +25,13 @@ _STATED = re.compile(rf"({_NAME})\s*:")
 _VALUE = re.compile(rf"({_NAME})\s*(?::(?:[^{{}}:]*,)?|!?=)\s*\Z")
 _WORD = re.compile(_NAME)
 CONDITION = re.compile(r"\b(?:where|and)(?:\s+not)?\s*\Z")
-"""The end of a text after which a condition begins. In braces, a property cannot follow these words."""
+"""Pattern of the words that end a text directly before a condition. In braces, no property follows these words."""
 _WRITTEN = re.compile(
     rf"\"(?:\\.|[^\"\\\n])*\"|[-+]?[\d.][\w.+\-]*(?:\s*(?:{'|'.join(UNITS)})(?![\w\-/]))?|{_NAME}(?!\s*:)"
 )
 _LISTED = re.compile(rf"({_NAME})\s*:\s*((?:{_WRITTEN.pattern})(?:\s*,\s*(?:{_WRITTEN.pattern}))*)?")
 _LABELS = ("name", "count", "for")
-"""Words before a colon that are no properties."""
+"""Words before a colon that are not names of properties."""
 
 
 def name_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[tuple[str, str]]:
@@ -56,7 +56,7 @@ def value_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[str]
 def _known_values(snapshot: Snapshot, uri: str, cursor: Cursor) -> Mapping[str, Sequence[str]]:
     """Return the values of each property as written.
 
-    Those of the declaration at the cursor are read from its text, since it may be broken.
+    For the declaration at the cursor, they are read from its text, because it may be broken.
     """
     found: dict[str, dict[str, None]] = {}
     for match in _LISTED.finditer(
@@ -76,7 +76,7 @@ def _states(placed: PlacedDeclaration) -> bool:
 
 
 def written(value: PropertyValue) -> str:
-    """Return the text of a value in a model. A word needs no quotes."""
+    """Return a value in the form for a model. A single word needs no quotes."""
     if value.kind != TEXT or (_WORD.fullmatch(value.text) and value.text not in ("true", "false")):
         return value.text
     escaped = value.text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 _HOW = (".bddx", ".scenex", ".ktree")
-"""Extensions of files that define how to execute, not what to test."""
+"""Extensions of files that define how to execute scenarios, not what to test."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,8 @@ class Place:
     - ``before``: the text that was parsed. Lines that cannot be parsed are blanked, and clauses joined by 'and' or 'or'
       or negated by 'not' have their parentheses.
     - ``expected``: what the grammar accepts after it; ``None`` if the text could not be parsed.
-    - ``opened``: the distances to the end of the text of the parentheses that are missing and still open there.
+    - ``opened``: the places of the missing parentheses that are still open at the end of the text, as distances from
+      this end.
     """
 
     before: str
@@ -44,7 +45,7 @@ def place_after(language: str, before: str) -> Place:
     for _ in range(MAX_BROKEN_LINES):
         parsed = parse_chunk(language, before)
         if isinstance(parsed, Parsed):
-            # After a whole declaration another one starts, whose first words may already be typed.
+            # After a complete declaration, another one starts. Its first words may already be typed.
             return place_after(language, before[parsed.trailing :] if parsed.trailing is not None else "")
         joined = joined_clauses(language, before, parsed)
         if joined is not None:
@@ -64,9 +65,10 @@ def place_after(language: str, before: str) -> Place:
 
 
 def _without_faulty_line(language: str, before: str, offset: int) -> str | None:
-    """Return a text in which the line is blank at which the parser stopped; ``None`` if the cursor is in that line.
+    """Return a text without the line at which the parser stopped; ``None`` if the cursor is in this line.
 
-    If the section above is empty and the parser gets further without its heading (``Given:``), that is blank instead.
+    If the section above is empty and the parser gets further without its heading (``Given:``), the heading is removed
+    instead. Removed text is replaced by spaces.
     """
     start, end = before.rfind("\n", 0, offset) + 1, before.find("\n", offset)
     if end < 0 or not before[start:end].strip():
@@ -106,7 +108,7 @@ def is_accepted(language: str, before: str, following: str) -> bool:
     text = f"{before}{following} "
     parsed = parse_chunk(language, text)
     while isinstance(parsed, Parsed) and parsed.trailing is not None:
-        # Text after a whole declaration must begin another one.
+        # Text after a complete declaration must begin another one.
         text = text[parsed.trailing :]
         parsed = parse_chunk(language, text)
     return isinstance(parsed, Parsed) or not text[parsed.offset :].strip()

@@ -42,7 +42,7 @@ def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnosti
             continue
         used = reference_at(file, diagnostic.span)
         fixes = () if used is None else _fixes(snapshot, file, *used, diagnostic.code)
-        # Another keyword is more likely than another name, a similar name more likely than a new declaration.
+        # A wrong keyword is more likely than a wrong name, and a similar name is more likely than a new declaration.
         every = (*fixes, *diagnostic.fixes) if diagnostic.code == "wrong-kind" else (*diagnostic.fixes, *fixes)
         yield replace(diagnostic, fixes=every)
 

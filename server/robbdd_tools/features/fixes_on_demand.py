@@ -111,7 +111,7 @@ def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
     """Return whether a set has elements and all of them are of the given kinds.
 
-    The type of a variable may be unknown.
+    For a set variable, it is enough that the kinds of its elements may match, because its type may be unknown.
     """
     if definition.kind is SymbolKind.SET_VARIABLE:
         return bool(variable_type(snapshot, definition).kinds & kinds)
@@ -122,7 +122,7 @@ def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
 def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
     """Yield a fix that removes a variable together with its values in the scenarios of its file."""
     found = next((one for one in file.definitions.values() if one.span == diagnostic.span), None)
-    # The severity is lower for variables without values and for those of quantifiers.
+    # The severity is lower for variables without values and for variables of quantifiers.
     if found is None or diagnostic.severity is not Severity.WARNING:
         return
     edits = [*removal(file.document, "", found.extent).edits]

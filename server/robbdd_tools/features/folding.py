@@ -114,7 +114,7 @@ def _runs(document: Document) -> Iterator[Fold]:
 def _lines_with(document: Document, beginning: str) -> Iterator[int]:
     """Yield the numbers of the lines that begin with a text, after white space."""
     text, starts = document.text, document.line_starts
-    # Many times as fast as a look at each line.
+    # This is many times as fast as a test of each line.
     found = text.find(beginning)
     while found >= 0:
         line = document.position(found).line

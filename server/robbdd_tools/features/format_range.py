@@ -19,7 +19,7 @@ _ENDING = re.compile(r"\r\n|\r|\n")
 
 
 def format_range(document: Document, within: Span) -> list[Edit]:
-    """Return the edits that give the lines of a range the layout that they have in the formatted document."""
+    """Return the edits that lay out the lines of a range as in the formatted document."""
     first, last = document.position(within.start).line, document.position(within.end).line
     if last > first and document.position(within.end).column == 0:
         last -= 1

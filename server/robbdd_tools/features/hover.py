@@ -48,7 +48,7 @@ class Hover:
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
-    """Describe the name or import at an offset. Without one, describe the enclosing phrase, or the keyword.
+    """Describe the name or import at an offset. If there is none, describe the enclosing phrase or the keyword.
 
     ``findings`` are the latest results of clauses. Everywhere inside a clause, the hover shows the clause's results.
     """
@@ -61,7 +61,7 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
         words = Hover(describe(snapshot, definition, findings), found[0], _worst_of(definition, findings))
         is_own = hint is not None and definition.extent == hint.span and definition.uri == uri
         if hint is not None and (is_own or definition.kind is SymbolKind.POLICY):
-            # The description of a clause or a policy has its results.
+            # The description of a clause or a policy contains its results.
             return replace(words, judged=hint.worst)
     else:
         words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset) or _elsewhere(snapshot, uri, offset)
@@ -71,7 +71,7 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
 
 
 def _joined(parts: Sequence[Hover]) -> Hover | None:
-    """Join what is known about a place. The general meaning of a keyword is last: a reader knows it after a while."""
+    """Join the descriptions of a place. The general meaning of a keyword is last, because readers soon know it."""
     if not parts:
         return None
     smallest = min((one.span for one in parts), key=lambda span: span.end - span.start)
@@ -120,7 +120,7 @@ def _keyword(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
 
 
 def _study_word(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
-    """Describe a keyword of a study, or a catalog behaviour that is a level."""
+    """Describe a keyword of a study, or a catalog behaviour that is a level of a factor."""
     tokens = list(study_tokens(snapshot.document(uri).text))
     for number, token in enumerate(tokens):
         if token.kind == "name" and token.span.contains(offset):

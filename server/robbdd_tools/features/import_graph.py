@@ -13,7 +13,7 @@ from robbdd_tools.base.spellings import Spellings
 from robbdd_tools.features.workspace_files import MAX_FILES
 from robbdd_tools.names.imports import components, import_uri, reached
 
-# May match too much (in comments), never too little: candidates are parsed later.
+# It may match too much (text in comments) but never too little. Candidates are parsed later.
 _IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
 
 
@@ -28,7 +28,7 @@ class ImportGraph:
     def of(cls, files: Iterable[str]) -> ImportGraph:
         """Build the graph of some files. The imports of a file are cached until the file changes on disk."""
         users: dict[str, set[str]] = {}
-        # The files are first, so that their names on the disk stand for them, whatever imports write.
+        # The files are added first, so that their names on disk represent them, however imports spell these names.
         spellings = Spellings()
         importing = [spellings.of(uri) for uri in files]
         for uri in importing:
@@ -38,7 +38,7 @@ class ImportGraph:
         return cls({uri: frozenset(found) for uri, found in users.items()}, spellings)
 
     def cycles(self) -> Mapping[str, int]:
-        """Return a number for each file that is imported, equal for files that import each other, directly or not."""
+        """Return a number for each imported file. It is equal for files that import each other, even indirectly."""
         edges = {uri: tuple(users) for uri, users in self.users.items()}
         return components(edges)
 

@@ -21,7 +21,7 @@ MAX_STATEMENTS = 20
 
 
 def describe_statements(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
-    """Yield a list, in Markdown, of what imported graphs say about a declaration."""
+    """Yield a list, in Markdown, of the statements of imported graphs about a declaration."""
     about = _graph_about(snapshot, definition)
     if about is None:
         return
@@ -33,7 +33,7 @@ def describe_statements(snapshot: Snapshot, definition: Definition) -> Iterator[
 
 
 def describe_graph(snapshot: Snapshot, uri: str) -> str | None:
-    """Describe an imported graph by the number of its statements; ``None`` if a file is no graph."""
+    """Describe an imported graph by the number of its statements; ``None`` if the file is not a graph."""
     if not graph_format(uri):
         return None
     from robbdd_tools.graph.write.imported_graphs import graph_of
@@ -45,7 +45,7 @@ def describe_graph(snapshot: Snapshot, uri: str) -> str | None:
 
 
 def places_in_graphs(snapshot: Snapshot, definition: Definition) -> Iterator[Location]:
-    """Yield the place where imported graphs begin to describe a declaration."""
+    """Yield the first place where imported graphs describe a declaration."""
     about = _graph_about(snapshot, definition)
     place = None if about is None else about.places.get((definition.iri or "",))
     if place is not None:

@@ -140,7 +140,7 @@ def _lines(text: str) -> Iterator[Line]:
         if pieces and gap:
             pieces.append(" ")
         if match["comment"] is not None and not gap and pieces[-1:] == [":"]:
-            # The end of an IRI that a missing quote further up has put outside of its string.
+            # This is the end of an IRI. A missing quote further up has put it outside its string.
             pieces.append(match["comment"].rstrip())
         elif match["comment"] is not None:
             comment = match["comment"].rstrip()

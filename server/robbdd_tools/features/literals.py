@@ -42,7 +42,7 @@ class ValueFacts:
 
     - ``kinds``: the kinds of values that fit.
     - ``setting``: the configuration that it sets, if any.
-    - ``dimension``: what it measures, such as ``length``; empty if unknown.
+    - ``dimension``: its dimension, such as ``length``; empty if unknown.
     """
 
     kinds: Kinds = ANYTHING
@@ -52,7 +52,7 @@ class ValueFacts:
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A literal to propose; ``described`` is the label under which its documentation is found."""
+    """A literal to propose. ``described`` is the label of its documentation."""
 
     label: str
     kind: str
@@ -62,7 +62,7 @@ class Literal:
 
 
 def facts_in_clause(before: str) -> ValueFacts:
-    """Return what a clause that is being typed says about the value at its end."""
+    """Return the facts about the value at the end of a clause that is being typed."""
     match = _SETTING.search(before)
     if match is not None and match[1] in SETTINGS:
         return _of_setting(SETTINGS[match[1]])
@@ -73,7 +73,7 @@ def facts_in_clause(before: str) -> ValueFacts:
 
 
 def facts_of_variable(snapshot: Snapshot, variable: Definition, kinds: Kinds) -> ValueFacts:
-    """Return what the clauses of a template say about the values of its variable, whose kinds are known."""
+    """Return the facts about the values of a template's variable according to its clauses. Their kinds are known."""
     site = site_of(snapshot, variable)
     for clauses in () if site is None else clauses_of(site.placed.declaration):
         if site is not None and site.span(clauses.node).contains(variable.span.start):
@@ -148,7 +148,7 @@ def _number(setting: Setting | None) -> Literal:
 
 @cache
 def _measured() -> tuple[tuple[re.Pattern[str], str], ...]:
-    """Return a pattern of the words before each quantity of a phrase, with what the quantity measures."""
+    """Return a pattern of the words before each quantity of a phrase, with the dimension of the quantity."""
     found: list[tuple[re.Pattern[str], str]] = []
     for word in load_catalog().predicates.values():
         for slot in word.slots:

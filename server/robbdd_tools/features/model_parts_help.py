@@ -1,4 +1,4 @@
-"""Names of parts of model files in scene instances: completion, description and definition from the files' text."""
+"""Complete, describe and find the names of model parts in scene instances, from the text of the model files."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ _SYSTEM = re.compile(rf"\bsys\s+path\s*=\s*({_TEXT})")
 _ROS = re.compile(rf"\bros\s+pkg\s*=\s*({_TEXT})\s*,\s*path\s*=\s*({_TEXT})")
 _NAME = re.compile(r"\bname\s*=\s*([\"'])")
 MAX_SHOWN = 8
-"""Names of each kind that the description of a file lists."""
+"""Maximum number of names of each kind that the description of a file lists."""
 PART_KINDS = {"body": "bodies", "joint": "joints", "site": "sites", "geom": "geoms", "actuator": "actuators"}
-"""Kinds of parts with their plurals."""
+"""Kind of a part → its plural."""
 
 
 def part_choices(uri: str, text: str, offset: int) -> Iterator[tuple[str, str, str, str]]:
@@ -92,7 +92,7 @@ def file_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Path] | No
 
 
 def part_definition(part: ModelPart) -> OutsidePlace:
-    """Return the place of a part in its file: its name there, else its element."""
+    """Return the place of a part in its file: the place of its name or, if it has none, of its element."""
     text = _text(part.path)
     end = text.find(">", part.start)
     found = _NAME.search(text, part.start, end if end >= 0 else len(text))

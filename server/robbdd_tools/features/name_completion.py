@@ -1,4 +1,4 @@
-"""Names to propose at a cursor: those in scope, those of files that can be imported, configurations and events."""
+"""Propose names at a cursor: names in scope, names in importable files, configurations and events."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Completion:
       ``CODE_KINDS``, or the kind of a symbol.
     - ``text``: the text to insert. The text of a snippet contains placeholders.
     - ``span``: the text that ``text`` replaces.
-    - ``whole``: like ``span``, but including the rest of the word after the cursor.
+    - ``whole``: like ``span``, but with the rest of the word after the cursor.
     - ``rank``: a proposal with a smaller rank fits better.
     - ``edits``: additional edits, for example a new import.
     - ``origin``: the document and the qualified name of a proposed name, or the URI of a proposed file and ``""``.
@@ -123,7 +123,7 @@ class Names:
         return frozenset(words for words, fitting in leading_kinds().items() if not fitting & kinds)
 
     def _reference_kinds(self, before: str) -> Kinds:
-        """Return the kinds of the element or variable that a text ends with, if it does."""
+        """Return the kinds of the element or variable at the end of a text, if any."""
         name = reference_before(before)
         if name is None or self.cursor.placed is None:
             return ANYTHING
@@ -215,7 +215,7 @@ class Names:
         misfits = _misfits(self.cursor) if role in ("Variable", "Term") else frozenset[str]()
         ranks = dict.fromkeys(misfits, 1)
         if role == "Term":
-            # A clause about an element holds for one scene only, so variables come first.
+            # A clause about an element fits only one scene, so variables are proposed first.
             variables = ROLE_KINDS["Variable"]
             ranks |= {name: 2 for name, (_, found) in visible.items() if found.symbol.kind not in variables}
         for name in sorted(visible, key=lambda name: (ranks.get(name, 0), name)):
@@ -224,7 +224,7 @@ class Names:
 
     @staticmethod
     def _may_be_named(name: str, symbol: Symbol) -> bool:
-        """Return whether a name may be written: predicates with a hyphen, and parameters inside of their definition."""
+        """Return whether a name may be written here: a predicate needs a hyphen, a parameter its own definition."""
         match symbol.kind:
             case SymbolKind.PARAMETER:
                 return "." not in name

@@ -1,6 +1,6 @@
 """Document outline of a file.
 
-It is computed piece by piece. A piece that an edit did not change is only moved.
+It is computed piece by piece. If an edit does not change a piece, the piece is only moved.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _KINDS = {
 class Item:
     """A declared name, or an element of a scene instance, with the names that are declared inside it.
 
-    It has the span of the name and the span of the whole declaration.
+    ``span`` is the place of the name, and ``extent`` is the place of the whole declaration.
     """
 
     name: str
@@ -119,7 +119,7 @@ def _of_study(document: Document) -> list[OutlinePiece]:
 def _shared(index: FileIndex) -> set[int]:
     """Return the numbers of the declarations whose items depend on other declarations.
 
-    These declare the same name as another one, or a name inside the name of another one.
+    Such a declaration declares the same name as another one, or a name inside a name of another one.
     """
     entries = index.names.entries
     shared = _repeated(index)
@@ -132,7 +132,7 @@ def _shared(index: FileIndex) -> set[int]:
 
 
 def _repeated(index: FileIndex) -> set[int]:
-    """Return the numbers of the declarations with a name that is declared elsewhere, or in two scenarios."""
+    """Return the numbers of the declarations with a name that another one, or two of their scenarios, declare."""
     found: set[int] = set()
     for path in index.names.repeated:
         numbers = {entry.declaration for entry in index.names.entries[path]}
@@ -153,7 +153,7 @@ def _paths(declaration: Declaration) -> frozenset[str]:
 def _outer_names(declaration: Declaration) -> frozenset[str] | None:
     """Return the names of other declarations in which this one declares names; ``""`` is the file itself.
 
-    The names in the scenarios of a story are inside the story. ``None`` if they are not.
+    The names in the scenarios of a story should be inside the story. If they are not, the result is ``None``.
     """
     if not declaration.parts:
         paths = _paths(declaration)
@@ -221,7 +221,7 @@ def _own_items(declaration: Declaration) -> tuple[Item, ...]:
 
 
 def _with_elements(item: Item, declaration: Declaration, offset: int) -> Item:
-    """Return the item of a scene instance with the elements that it models; any other item as it is."""
+    """Add to the item of a scene instance the elements that it models. Any other item is returned unchanged."""
     root = declaration.tree
     if not isinstance(root, tree.SceneInstance) or item.span != root.name.span.shifted(offset):
         return item
@@ -230,7 +230,7 @@ def _with_elements(item: Item, declaration: Declaration, offset: int) -> Item:
 
 
 def _grouped(items: tuple[Item, ...], modelled: Sequence[tree.Modelled], offset: int) -> tuple[Item, ...]:
-    """Return items, with those inside of a modelled element as its children, in text order."""
+    """Return items in text order. Items inside a modelled element become children of the element."""
     outer = list(items)
     for one in modelled:
         extent = one.span.shifted(offset)

@@ -1,4 +1,4 @@
-"""The files that are not models and that a model uses: Python modules, its own steps, and descriptions of robots."""
+"""Find the files that a model uses but that are not models: Python modules, its own steps, robot descriptions."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 NAMING = ("bdd", "bddx", "scenex")
-"""Languages that can name such files."""
+"""Languages whose files can name other files than models."""
 
 
 def outside_uris(snapshot: Snapshot, uri: str) -> frozenset[str]:
-    """Return the URIs of these files for one model, with the files that they include.
+    """Return the URIs of the other files that one model uses, including the files that these include.
 
-    Files that do not exist are among them: the model changes its meaning when they do.
+    Missing files are included, too, because their creation changes the meaning of the model.
     """
     own = uri_to_path(uri)
     file = snapshot.file(uri) if own is not None and language_of(uri) in NAMING else None

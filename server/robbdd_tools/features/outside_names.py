@@ -1,4 +1,4 @@
-"""Names in a model of things that other files define: Python code, parts of a robot's description, catalog entries."""
+"""Names in a model that files other than models define: Python code, parts of robot descriptions, catalog entries."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 
 _NAMING = ("bddx", "scenex", "ktree", "bdd")
-"""Languages that can name such things."""
+"""Languages whose files can contain such names."""
 
 
 @dataclass(frozen=True, slots=True)
 class OutsideName:
-    """A name at an absolute span. ``describe`` returns Markdown, and ``definition`` the place that defines it."""
+    """A name at an absolute span. ``describe`` returns Markdown, and ``definition`` returns the defining place."""
 
     span: Span
     describe: Callable[[], str | None]
@@ -62,7 +62,7 @@ def outside_name_at(snapshot: Snapshot, uri: str, offset: int) -> OutsideName | 
 
 
 def outside_references(snapshot: Snapshot, uri: str, offset: int) -> tuple[list[tuple[str, Span]], OutsidePlace | None]:
-    """Return the places in the loaded models that name what another file defines, sorted, and its definition.
+    """Return the sorted places in loaded models that mean the name at an offset, and its definition in another file.
 
     Uses in the other file, such as Python code, are not searched.
     """
@@ -83,7 +83,7 @@ def outside_references(snapshot: Snapshot, uri: str, offset: int) -> tuple[list[
 
 
 def _named_in(file: FileAnalysis) -> Iterator[Span]:
-    """Yield the spans of a file that may name something that another file defines."""
+    """Yield the spans in a file that may contain a name that another file defines."""
     for placed in file.declarations:
         root = placed.declaration.tree
         for node in walk(root) if root is not None else ():

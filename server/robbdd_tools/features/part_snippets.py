@@ -62,4 +62,4 @@ _SCENEX = (
     ),
 )
 PART_SNIPPETS: Mapping[str, tuple[Snippet, ...]] = MappingProxyType({"bdd": _BDD, "scenex": _SCENEX, "ktree": _SCENEX})
-"""The snippets of each kind of file."""
+"""Kind of file → its snippets."""

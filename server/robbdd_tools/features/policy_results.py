@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 def policy_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
     """Return a hint for each policy of a file with results, and for each use of a policy in an execution.
 
-    A policy has the results of its clause in all executions that use the policy; a use has those of its execution. They
-    are stale if the text of the clause, of an execution, or of a declaration that it depends on has changed.
+    A policy has the results of its clause in all executions that use the policy. A use has the results of its
+    execution. Results are stale if the text of the clause, of an execution, or of one of its dependencies has changed.
     """
     file = snapshot.file(uri)
     if file is None or not findings.clauses:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 MODULE = "policies"
-"""Module of the evaluator, next to the ``.bddx``; its function is named after the clause."""
+"""Module of the evaluator. It is in the folder of the ``.bddx``, and its function is named after the clause."""
 MAX_WORDS = 4
 """Maximum number of words of a text that form the name of its clause."""
 

@@ -1,4 +1,4 @@
-"""Whole phrases of named predicates, to be completed with their parameters as placeholders."""
+"""Complete whole phrases of named predicates, with placeholders for their parameters."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def phrase_form(snapshot: Snapshot, definition: Definition, *, is_after_subject: bool) -> tuple[str, str] | None:
     """Return the phrase of a named predicate as its label and as the body of a snippet.
 
-    ``is_after_subject`` is true if the text before the phrase is its subject. The result is ``None`` if the predicate
-    has no parameter to be written, or has no subject although there is one.
+    ``is_after_subject`` is true if the text before the phrase is its subject. The result is ``None`` if there is no
+    parameter left to write, or if the text has a subject and the predicate has none.
     """
     site = site_of(snapshot, definition)
     nodes = () if site is None else (site.tree,)

@@ -1,7 +1,7 @@
-"""The results that concern a file: those of its own project, and those of projects that import it.
+"""Select the results that concern a file: the results of its own project, and of projects that import the file.
 
-Copies of a project, such as two checkouts in one window, declare the same IRIs, but a run of one says nothing about the
-other.
+Copies of a project, such as two checkouts in one window, declare the same IRIs. A run of one copy is no evidence for
+the other one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Entry = TypeVar("Entry")
 
 
 class ProjectFindings:
-    """The results at one moment, for each project."""
+    """The results of each project at one moment."""
 
     def __init__(self, scenarios: Iterable[JudgedScenario] = (), rejudged: RejudgedExecutions | None = None) -> None:
         by_project: dict[str, list[JudgedScenario]] = {}
@@ -40,7 +40,7 @@ class ProjectFindings:
 
 
 def findings_of(scenarios: Iterable[JudgedScenario], rejudged: RejudgedExecutions = MappingProxyType({})) -> Findings:
-    """Return the results of some scenarios, with those of stored traces on edited clauses."""
+    """Return the results of some scenarios, including the verdicts of stored traces on edited clauses."""
     clauses: dict[str, list[Judged]] = {}
     variants: dict[str, list[JudgedScenario]] = {}
     edited: dict[str, list[RejudgedClause]] = {}

@@ -1,4 +1,4 @@
-"""Names of Python code in models: completion, description and definition from syntax trees. Nothing is imported."""
+"""Complete, describe and find names of Python code in models, by syntax trees. Nothing is imported."""
 
 from __future__ import annotations
 
@@ -37,8 +37,9 @@ CODE_KINDS = frozenset({"class", "function", "value", "module"})
 def code_choices(uri: str, before: str, word: str) -> Iterator[tuple[str, str, str, int, str]]:
     """Yield the completions of a name of Python code.
 
-    ``before`` is the text of the declaration up to the word at the cursor, and ``word`` is its typed part. Each one has
-    a label, a kind, a detail, a rank (classes and functions of the module itself first) and ``module:attribute``.
+    ``before`` is the text of the declaration up to the word at the cursor, and ``word`` is its typed part. Each
+    completion has a label, a kind, a detail, a rank (classes and functions of the module itself first) and
+    ``module:attribute``.
     """
     own = uri_to_path(uri)
     if own is None:
@@ -68,7 +69,7 @@ def describe_code(uri: str, name: str) -> str | None:
 def code_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, str] | None:
     """Return the name of Python code at an offset: its absolute span and ``module:attribute``.
 
-    On the module's name, the attribute is empty.
+    If the offset is in the module's name, the attribute is empty.
     """
     file = snapshot.file(uri)
     for placed in file.declarations if file is not None else ():
@@ -92,7 +93,7 @@ def code_definition(uri: str, name: str) -> OutsidePlace | None:
 
 
 def _place(uri: str, module: str, attribute: str) -> PythonPlace | None:
-    """Return the place of an attribute, or of the module if it is empty, as a model sees it."""
+    """Return the place of an attribute as a model finds it; the place of the module if the attribute is empty."""
     own = uri_to_path(uri)
     if own is None:
         return None

@@ -54,10 +54,10 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
 
 
 def files_in_quotes(uri: str, typed: str, endings: Collection[str]) -> Iterator[tuple[str, str, str, str]]:
-    """Yield the folders, and the files with the given extensions, that may continue a path, as ``quoted`` does."""
+    """Yield the folders, and the files with the given extensions, that may continue a path, as in ``quoted``."""
     folder, _, last = typed.rpartition("/")
     for name, kind in _entries(uri, folder and f"{folder}/", endings):
-        # On the disk, a name may be bytes that are no UTF-8; what is typed may be half a character.
+        # A name on disk may contain bytes that are not UTF-8, and the typed text may end with half a character.
         above = f"{quote(folder, errors='surrogatepass')}/" if folder else ""
         yield name, kind, last, urljoin(uri, above + quote(name, errors="surrogateescape"))
 

@@ -181,7 +181,7 @@ def _arriving(move: _Move, paths: Mapping[tree.Ref, str]) -> Iterator[Change]:
 
 
 def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.Ref, str] | None:
-    """Return new paths for the references in a node whose target is the moved template or a part of it.
+    """Return new paths for the references in a node to the moved template or to a part of it.
 
     Returns ``None`` if a reference does not start with the template's name.
     """
@@ -200,7 +200,7 @@ def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.
 
 
 def _leading_to(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[str, Span]]:
-    """Yield each reference to a definition itself, and the span of its whole path."""
+    """Yield each reference to a definition itself, with the span of the reference's whole path."""
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():

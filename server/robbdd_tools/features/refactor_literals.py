@@ -1,4 +1,4 @@
-"""Refactoring: a literal of a template becomes a variable, which has the literal as its value in each scenario."""
+"""Refactoring: replace a literal of a template by a variable that has this literal as its value in each scenario."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def literal_as_variable(snapshot: Snapshot, uri: str, selected: Span) -> Fix | N
 
 
 def _literals(template: tree.Template) -> Iterator[tuple[_Literal, str]]:
-    """Yield the literals for which a variable may stand, each with a name for the variable."""
+    """Yield the literals that a variable may replace, each with a name for the variable."""
     for node in walk(template):
         match node:
             case tree.PhraseUse():
@@ -76,7 +76,7 @@ def _is_at(span: Span, selected: Span) -> bool:
 
 
 def _free(site: Site, base: str) -> str:
-    """Return a name that nothing in the file has: templates of a namespace share variables by name."""
+    """Return a name that is unused in the file, because templates of a namespace share variables by name."""
     taken = {path.rpartition(".")[2] for path in site.file.definitions}
     return next(name for number in count(1) if (name := base if number == 1 else f"{base}-{number}") not in taken)
 

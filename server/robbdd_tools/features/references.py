@@ -39,7 +39,7 @@ class Highlight:
 def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[Place]:
     """Return the uses of the name at an offset, sorted by file and place.
 
-    The places where imported graphs describe it are included.
+    The places where imported graphs describe the declared element are included.
     """
     found = symbol_at(snapshot, uri, offset)
     if found is None:

@@ -37,8 +37,8 @@ class RejudgedResult:
 def rejudged_result(rejudged: Sequence[RejudgedClause], executed: Sequence[Judged], now: str) -> RejudgedResult:
     """Return the result of a clause.
 
-    ``executed`` are the verdicts of its runs, and ``now`` is the digest of its current text. Verdicts of runs on that
-    text count, too. The others are still to be judged.
+    ``executed`` are the verdicts of its runs, and ``now`` is the digest of its current text. If a run judged this text,
+    its verdict counts, too. The other executions are still to be judged.
     """
     known = {id(one.scenario) for one in rejudged}
     others = [entry for entry in executed if id(entry[0]) not in known]

@@ -1,4 +1,4 @@
-"""Edit imports when files are renamed: the imports in the moved files, and those in files that import them."""
+"""Edit imports when files are renamed: imports in the moved files, and imports of the moved files."""
 
 from __future__ import annotations
 

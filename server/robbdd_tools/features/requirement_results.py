@@ -27,10 +27,11 @@ MAX_RELATED = 5
 class Evidence:
     """The result of the latest executions of a scenario variant for a requirement that the variant verifies.
 
-    - ``held``, ``run``: the number of executions in which all its clauses held, and of all executions.
+    - ``held``: the number of executions in which all its clauses held.
+    - ``run``: the number of all executions.
     - ``outcome``: the worst outcome; ``""`` if the variant was never run.
     - ``vacuous``: true if none of its clauses could have failed.
-    - ``stale``: true if the text of the variant, its template or a clause has changed since.
+    - ``stale``: true if the text of the variant, its template or a clause has changed since then.
     """
 
     verifier: Verifier
@@ -112,7 +113,7 @@ def _evidence(snapshot: Snapshot, verifier: Verifier, findings: Findings) -> Evi
 
 
 def _changed(snapshot: Snapshot, verifier: Verifier, known: Sequence[JudgedScenario]) -> bool:
-    """Return whether a clause that verifies has another text than the executions judged."""
+    """Return whether a clause that verifies the requirement has changed since the executions judged it."""
     files = [one.uri for one in (verifier.variant.definition, verifier.variant.template) if one is not None]
     for iri, clause in verifier.clauses.items():
         now = {digest(snapshot, uri, clause.span) for uri in files}
@@ -122,7 +123,7 @@ def _changed(snapshot: Snapshot, verifier: Verifier, known: Sequence[JudgedScena
 
 
 def _outcome(scenario: JudgedScenario, verifier: Verifier) -> str:
-    """Return the outcome of an execution for a requirement: that of the scenario, or the worst of the clauses."""
+    """Return an execution's outcome for a requirement: the outcome of the scenario, or the worst of the clauses."""
     if verifier.whole:
         return scenario.outcome
     outcomes = [scenario.clauses[iri].outcome if iri in scenario.clauses else "unknown" for iri in verifier.clauses]
@@ -130,7 +131,7 @@ def _outcome(scenario: JudgedScenario, verifier: Verifier) -> str:
 
 
 def requirement_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> Iterator[Diagnostic]:
-    """Yield the requirements of a file that the latest runs did not show to be satisfied."""
+    """Report the requirements of a file of which the latest runs did not show that they are satisfied."""
     for one in coverage_of_file(snapshot, uri, findings) if findings.variants else ():
         name, place = one.requirement.symbol.path, one.requirement.span
         failing = [entry for entry in one.evidence if entry.outcome and entry.outcome != "holds" and not entry.stale]

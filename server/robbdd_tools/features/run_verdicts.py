@@ -34,13 +34,13 @@ class Judgement:
     - ``margin``: the margin as text.
     - ``said``: the verdict as text, with its instant and its reason.
     - ``failure``: why the clause is violated or unknown, the reason first; empty if it holds.
-    - ``rank``: of several verdicts, the one with the smallest rank is the worst.
+    - ``rank``: the worst of several verdicts has the smallest rank.
     - ``digest``: the digest of the clause's text when it was judged.
     - ``line``: the line of the clause's step in the feature.
     - ``vacuous``: why the clause could not have failed in the whole run; empty if it could.
     - ``fault``: the ``id`` of the error in users' code that made the clause unknown.
-    - ``because``: the IRI of the clause of the same execution that is the cause; empty if the clause is no consequence.
-    - ``because_words``: a text that names that clause.
+    - ``because``: the IRI of another clause of the execution that caused this verdict; empty if there is none.
+    - ``because_words``: a text that names this other clause.
     """
 
     name: str
@@ -60,7 +60,9 @@ class Judgement:
 
 @dataclass(slots=True)
 class JudgedScenario:
-    """One execution of a scenario: number ``variation`` of a variant, its values in words, and its clauses by IRI.
+    """One execution of a scenario, with its values in words and the verdicts on its clauses by IRI.
+
+    The scenario is number ``variation`` of a variant.
 
     - ``digest``: the digest of the text of the variant and its template.
     - ``row``: the digest of the scenario's table row; empty if it has none.
@@ -73,7 +75,7 @@ class JudgedScenario:
     - ``seed``: the seed that the user gave for the run, or ``None``.
     - ``substitution``: the catalog behaviour that was executed instead of the model's.
     - ``scene_instance``: the scene instance that the user chose.
-    - ``world``: what the results say about a world without physics; ``None`` for physics.
+    - ``world``: the description of a world without physics in the results; ``None`` for a world with physics.
     - ``project``: the root folder of the model's project. Models of different projects may have the same IRIs.
     """
 
@@ -117,7 +119,7 @@ class JudgedScenario:
             self.clauses[iri] = judgement
 
     def mark_vacuous(self, reasons: Mapping[str, str]) -> None:
-        """Add the reasons, by the IRI of the clause, why clauses could not have failed in the run."""
+        """Record the reasons why clauses could not have failed in the run, by the IRI of the clause."""
         for iri in self.clauses.keys() & reasons.keys():
             self.clauses[iri] = replace(self.clauses[iri], vacuous=reasons[iri])
 
@@ -129,9 +131,9 @@ Judged = tuple[JudgedScenario, Judgement]
 
 @dataclass(frozen=True, slots=True)
 class RejudgedExecution:
-    """The edited clauses of a stored execution, re-judged on its trace, by IRI.
+    """The edited clauses of a stored execution by IRI, re-judged on its trace.
 
-    ``reason`` is the reason why the trace is no evidence for the edited scenario; then no clause is judged.
+    If the trace is no evidence for the edited scenario, ``reason`` is the reason, and no clause is judged.
     """
 
     reason: str = ""
@@ -154,7 +156,7 @@ class RejudgedClause:
 
 
 RejudgedExecutions = Mapping[str, Mapping[tuple[int, int], RejudgedExecution]]
-"""For each model, the executions that its edits concern, by the numbers of their run and of the execution."""
+"""Model → the executions that its edits concern, by the number of the run and the number of the execution."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,7 +295,7 @@ def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
 
 
 _digests: dict[bytes, str] = {}
-"""Digests by hash of the text; keeping the texts themselves would grow memory with each edit."""
+"""Cached digests by the hash of the text. If the texts themselves were cached, memory would grow with each edit."""
 
 
 def _digest(text: str) -> str:

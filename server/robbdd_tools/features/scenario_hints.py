@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioHint:
-    """The inlay hint after the name of a variant. ``span`` is the absolute span of the name, ``variant`` its IRI."""
+    """The inlay hint after the name of a variant. ``span`` is the name's absolute span, ``variant`` its IRI."""
 
     span: Span
     count: int

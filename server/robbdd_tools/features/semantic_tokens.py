@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
 CACHED_COMMENTS = 200
 NAME = "name"
-"""A used name; only its definition determines its concept, so no final token has this one."""
+"""Temporary concept of a used name. The definition of the name determines the concept in the final token."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
 PROPERTY = "property"
 _WORDS = re.compile(
@@ -69,7 +69,7 @@ class Coloured:
 class _Known:
     """The cached colours of a declaration.
 
-    Besides the targets of references, the colours depend on the names ``paths``, which were looked up in ``tables``.
+    The colours depend on the targets of references, and on the names ``paths``, which were looked up in ``tables``.
     """
 
     tables: tuple[NameTable, ...]

@@ -56,7 +56,7 @@ def event_meaning(event: tree.DefinedEvent) -> str:
 
 
 def time_words(time: tree.TimeConstraint) -> str:
-    """Return a time constraint as it ends a sentence."""
+    """Return a time constraint in words, as the end of a sentence."""
     if isinstance(time, tree.During):
         return f"{'at some time ' if time.some_time else ''}from {time.start.path} until {time.end.path}"
     word = "before" if isinstance(time, tree.Before) else "after"
@@ -97,7 +97,7 @@ def condition_meaning(conditions: Sequence[tree.PhraseUse | tree.NamedUse]) -> s
 
 
 def emission_meaning(emission: tree.Emission) -> str:
-    """Describe what a behaviour emits as an event of the model."""
+    """Describe which of its own events a behaviour emits as an event of the model."""
     moment = emission.moment.text
     return f"When the behaviour emits its own event `{moment}`, the event `{emission.event.path}` of the model occurs."
 

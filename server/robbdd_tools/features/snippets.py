@@ -39,11 +39,11 @@ _CHOSEN: Mapping[str, str] = {
     "VectorOrNumber": "Number",
     "Variable": "PlainVariable",
 }
-"""The alternative to show if the grammar's first one is not the most common."""
+"""Rules whose most common alternative is not the first one in the grammar, each with this alternative."""
 _SHOWN = frozenset({"namespace", "duration", "task", "role", "given", "then", "root"})
 """Optional parts that are shown."""
 _RARE = frozenset({"events"})
-"""Repeated parts that are not shown; they have a snippet of their own."""
+"""Repeated parts that are not shown, because they have their own snippet."""
 _LABELS = frozenset({"Given", "When", "Then", "Scenarios", "variation"})
 _SAMPLES: Mapping[str, str] = {
     "NameText": "name",
@@ -101,7 +101,7 @@ def declaration_snippets(language: str) -> tuple[Snippet, ...]:
 def keyword_form(language: str, words: str) -> str | None:
     """Return the syntax of the form that starts with some keywords.
 
-    If no form starts with them, the whole form that contains them is returned.
+    If no form starts with them, return the whole form that contains them.
     """
     rules = read_grammar(grammar_text(language))
     wanted = words.split()
@@ -143,7 +143,7 @@ def _sequences(part: Expression) -> Iterator[tuple[Expression, ...]]:
 def _up_to_label(parts: tuple[Expression, ...], words: int) -> tuple[Expression, ...]:
     """Return the parts of a form up to the next part that has a label.
 
-    The parts end earlier at a bracket that was opened before them.
+    They also end at a closing bracket that was opened before the first part.
     """
     depth = 0
     for number, part in enumerate(parts):
@@ -182,7 +182,7 @@ class _Writer:
         return Snippet(" ".join(keywords), _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out))
 
     def form(self, parts: tuple[Expression, ...]) -> str:
-        """Return parts of a rule with the text of the placeholders."""
+        """Return parts of a rule as text, in which placeholders are replaced by their texts."""
         words = list(dropwhile(lambda word: word == _BREAK, self._words(Sequence(parts), depth=1)))
         laid_out = lay_out(_broken_into_lines(words)).rstrip("\n")
         body = _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out)

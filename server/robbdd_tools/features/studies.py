@@ -32,7 +32,7 @@ def is_study(uri: str) -> bool:
 def scenarios_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
     """Return the variants and executions that a study may name, by local name.
 
-    As in a run: of a model with executions, only variants that are executed can be named.
+    As in a run, a variant of a model with executions can be named only if it is executed.
     """
     found: dict[str, Definition] = {}
     for model in _models(snapshot, uri):
@@ -49,7 +49,7 @@ def scenarios_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]
 
 
 def implementations_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
-    """Return the implementations of behaviours for which a study may name others, by local name."""
+    """Return the implementations of behaviours that a study may replace by others, by local name."""
     found: dict[str, Definition] = {}
     for definition in _definitions(snapshot, uri, SymbolKind.IMPLEMENTATION):
         found.setdefault(definition.symbol.name, definition)
@@ -59,7 +59,8 @@ def implementations_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Defin
 def variables_of_study(snapshot: Snapshot, uri: str) -> Mapping[str, Definition]:
     """Return the variables to which a study may give a range, by local name and with their templates (``pick.height``).
 
-    A local name that several templates have stands for all of them, and has the definition of the first one.
+    If several templates have a variable of the same local name, the local name stands for all of these variables, but
+    its definition is the first one.
     """
     found: dict[str, Definition] = {}
     for definition in _definitions(snapshot, uri, SymbolKind.VARIABLE):
@@ -103,7 +104,7 @@ def _names(snapshot: Snapshot, uri: str) -> Iterator[tuple[Span, Definition]]:
 
 
 def _template(document: Document, word: Word, known: Mapping[str, Definition]) -> Iterator[tuple[Span, Definition]]:
-    """Yield the template in the name of a variable, if it has one."""
+    """Yield the place and the definition of the template in the name of a variable, if any."""
     template, dot, _ = word.text.rpartition(".")
     if dot and template in known:
         start = document.text.index(word.text, word.span.start)
@@ -111,7 +112,7 @@ def _template(document: Document, word: Word, known: Mapping[str, Definition]) -
 
 
 def _target(document: Document, word: Word, known: Mapping[str, Definition]) -> Iterator[tuple[Span, Definition]]:
-    """Yield the place of the local name in a reference, with its definition, if that is known."""
+    """Yield the place of the local name in a reference, and its definition, if the definition is known."""
     local = _LOCAL.search(word.text)
     target = known.get(local[0]) if local is not None else None
     if local is None or target is None or (":" in word.text and not _is_of(word.text, target)):
@@ -121,7 +122,7 @@ def _target(document: Document, word: Word, known: Mapping[str, Definition]) -> 
 
 
 def _is_of(written: str, target: Definition) -> bool:
-    """Return whether a CURIE or an IRI may be that of a definition. The prefixes of the graph are not known here."""
+    """Return whether a CURIE or IRI may denote a definition. The prefixes of the graph are not known here."""
     return target.iri == written or "/" not in written
 
 

@@ -31,7 +31,7 @@ _FORMS = {
     "where": 'where: "',
     "factor": "factor ",
 }
-"""The text that a proposed setting inserts."""
+"""Setting → the text that its proposal inserts."""
 _SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
     "a scenario",
     "an implementation",
@@ -40,16 +40,16 @@ _SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
     "a model",
     "a scene",
 )
-"""Values that are names or files. Whatever else is expected is a word."""
+"""Expected values that are names or files. All other expected texts are words of the language."""
 
 _CHOICES: Mapping[str, Sequence[str]] = {
     "design": DESIGNS,
     "traces": (FAILURES, ALL),
     "block": ("repetition",),
 }
-"""The words that begin the value of a setting."""
+"""Setting → the words that begin its value."""
 _LENGTHS = {"timeout": 3, "design": 3, "traces": 4}
-"""The number of tokens of a value with its colon, of settings whose value is not one token."""
+"""Setting → the number of tokens of its colon and value, if the value has more than one token."""
 _UNITS = {"timeout": "seconds", "traces": "MB"}
 
 
@@ -112,7 +112,7 @@ def _cursor_in(document: Document, offset: int, line: str) -> _Cursor:
 
 
 def _expected(tokens: Sequence[Token]) -> Sequence[str]:
-    """Return the words, or the kinds of values, that may follow some tokens."""
+    """Return the words and the kinds of values that may follow some tokens."""
     names = [one.text for one in tokens]
     if "Study" not in names:
         return (_MODEL,) if names[-1:] == ["import"] else ("import", "Study")
@@ -139,7 +139,7 @@ def _expected(tokens: Sequence[Token]) -> Sequence[str]:
 
 
 def _begins(tokens: Sequence[Token], place: int, one: Token) -> bool:
-    """Return whether a token begins a setting. A catalog behaviour may have the name of one, but no colon after it."""
+    """Return whether a token begins a setting. A catalog behaviour of the same name has no colon after it."""
     following = tokens[place + 1].text if place + 1 < len(tokens) else ""
     return one.kind == "name" and one.text in SETTINGS and (one.text == "factor" or following == ":")
 
@@ -163,7 +163,7 @@ def _list_value(setting: str, given: Sequence[str]) -> Sequence[str]:
 
 
 def _range_value(inside: Sequence[Token], given: Sequence[str], kinds: Sequence[str]) -> Sequence[str]:
-    """Return what may follow the words of a range. Its bounds may have units."""
+    """Return the words and kinds of values that may follow a partly typed range. Its bounds may have units."""
     if len(given) == 1:
         return (_VARIABLE,)
     if kinds[1:] == ["reference", "sign"]:
@@ -202,7 +202,7 @@ def _words(cursor: _Cursor, words: Sequence[str]) -> Iterator[Completion]:
 def _names(
     document: Document, cursor: _Cursor, known: Mapping[str, Definition], listed: Sequence[str]
 ) -> Iterator[Completion]:
-    """Yield names in angle brackets. Brackets that are already there are not repeated."""
+    """Yield names in angle brackets. Brackets that are already typed are not repeated."""
     closed = document.text.startswith(">", cursor.whole.end)
     for name, definition in sorted(known.items()):
         if name not in listed:

@@ -1,4 +1,4 @@
-"""The settings of a study in words, and the form of a whole study."""
+"""Describe the settings of a study in words, and show the form of a whole study."""
 
 from __future__ import annotations
 
@@ -59,9 +59,9 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "Study": ("Study NAME { … }", "Executes scenarios many times, in several configurations."),
     }
 )
-"""The forms and the meaning of each word that begins a part of a study."""
+"""Word that begins a part of a study → its form and its meaning."""
 WHOLE = Snippet("Study", 'import "${1:model.bdd}"\n\nStudy ${2:name} {\n    repeat: ${3:10}\n    seed: ${4:1}\n}\n')
-"""The form of a whole study."""
+"""Snippet of a whole study."""
 
 
 def study_word_meaning(word: str) -> str | None:
@@ -73,9 +73,9 @@ def study_word_meaning(word: str) -> str | None:
 
 
 def study_keyword_meaning(tokens: Sequence[Token], number: int) -> str | None:
-    """Describe one of the tokens of a study: by its setting, if it is a word within one; ``None`` for names and values.
+    """Describe a token of a study. A word inside a setting is described by the setting; names and values have ``None``.
 
-    The tokens end with that of the end of the file.
+    The last token is the end of the file.
     """
     word, before = tokens[number].text, tokens[:number]
     is_value = tokens[number + 1].text in (",", "}") or (bool(before) and before[-1].text == "Study")

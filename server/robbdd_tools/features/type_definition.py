@@ -59,7 +59,7 @@ def _type_refs(site: Site, definition: Definition) -> list[tree.Ref]:
 
 
 def _value_sets(site: Site, variable: Definition) -> list[Definition]:
-    """Return the sets that variants assign to a variable, and the sets of the elements that they assign."""
+    """Return the sets that variants assign to a variable, and the sets that contain the assigned elements."""
     template = site.file.definitions.get(variable.symbol.path.partition(".")[0])
     found: list[Definition] = []
     for scenario in variants_of(site.snapshot, template) if template is not None else ():

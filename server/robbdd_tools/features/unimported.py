@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import SymbolKind
 
 Kinds = Mapping[str, "tuple[SymbolKind, ...]"]
-"""Qualified name → kinds of its declarations."""
+"""Qualified name → the kinds of its declarations."""
 MAX_NEIGHBOURS = 200
 """Maximum number of model files in one folder that are searched for a name."""
 
@@ -33,7 +33,7 @@ class Importable:
 
 
 class Elsewhere:
-    """The names in those files of the workspace that were not loaded at the last ``update``."""
+    """The names in workspace files that were not loaded at the last ``update``."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[FileState, Kinds]] = {}
@@ -54,7 +54,7 @@ class Elsewhere:
     def importable(self, snapshot: Snapshot, uri: str) -> list[Importable]:
         """Return the files that a file may import, sorted by import path.
 
-        Files that are loaded or in the folder of the file are left out; see ``loaded`` and ``beside``.
+        Loaded files and files in the same folder are left out, because ``loaded`` and ``beside`` return them.
         """
         passed_over = {*snapshot.sources, *_beside(uri)}
         return _importable(uri, ((name, found) for name, (_, found) in self._known.items() if name not in passed_over))
@@ -68,7 +68,7 @@ def loaded(snapshot: Snapshot, uri: str) -> list[Importable]:
 
 
 def beside(snapshot: Snapshot, uri: str) -> list[Importable]:
-    """Return the files in the folder of a file that it may import and that are not loaded."""
+    """Return the unloaded files in the folder of a file that the file may import."""
     unread = (file_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
     return _importable(uri, ((index.document.uri, index.names.kinds) for index in unread if index is not None))
 
@@ -95,7 +95,7 @@ def _beside(uri: str) -> list[str]:
 
 
 def file_on_disk(uri: str) -> FileIndex | None:
-    """Return the index of a file on disk, which is cached until the file changes; ``None`` if it cannot be read."""
+    """Return the index of a file on disk, or ``None`` if it is unreadable. It is cached until the file changes."""
     state = file_state(uri)
     return None if state is None else _index_of(state)
 

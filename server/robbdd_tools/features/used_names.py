@@ -1,4 +1,4 @@
-"""The places where names are used. Those of a declaration are kept as long as no edit may have changed them."""
+"""Find the places where names are used. They are cached for each declaration until an edit may have changed them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Name = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """The cached uses of a declaration. Besides its targets, they depend on the names ``paths`` in ``tables``."""
+    """The cached uses of a declaration. They depend on its targets and on the names ``paths`` in ``tables``."""
 
     tables: tuple[NameTable, ...]
     paths: frozenset[str]
@@ -46,7 +46,7 @@ def uses_by_part(
 ) -> Iterator[tuple[PlacedDeclaration, tuple[Span, ...]]]:
     """Yield the declarations, or parts of them, that use a name, in text order, and their uses.
 
-    The spans count from the start of the declaration. A place that means the name but does not contain it is left out.
+    The spans count from the start of the declaration. A place that means the name without containing it is left out.
     """
     tables = snapshot.scope(file.document.uri).tables
     for placed in file.parts():

@@ -70,8 +70,7 @@ def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element
 def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: frozenset[Element] | None = None) -> bool:
     """Return whether a value, or a set of values, is of one of the wanted kinds.
 
-    If the ``members`` of a scene are given, and the scene has members of the kind of an element, the element must be
-    one of them.
+    If the ``members`` of a scene are given and some of them have the kind of an element, the element must be a member.
     """
     if definition.kind in _MEMBER_KINDS:
         elements = [Element(str(definition.kind), definition.symbol.path, (definition.uri, definition.symbol.path))]
@@ -117,7 +116,7 @@ def reference_before(before: str) -> str | None:
 
 @cache
 def leading_kinds() -> Mapping[str, Kinds]:
-    """Return the kinds that fit before the words of a phrase, such as ``is located at``; words of all phrases."""
+    """Map the words of each phrase, such as ``is located at``, to the kinds that fit before them."""
     found: dict[str, Kinds] = {}
     catalog = load_catalog()
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
@@ -141,14 +140,14 @@ def _variable_of_cell(before: str) -> str | None:
     if rule is None:
         return None
     header = re.findall(_REFERENCE, table[: rule.start()])
-    # A row of n cells has n + 1 bars, wherever its lines break.
+    # A row of n cells has n + 1 bars, even if it is broken into several lines.
     column = table.count("|", rule.end()) % (len(header) + 1) - 1
     return header[column] if column >= 0 else None
 
 
 @cache
 def _beginnings() -> tuple[tuple[re.Pattern[str], Kinds], ...]:
-    """Return a pattern for each part of a phrase before a slot, longest first, with the kinds of the slot."""
+    """Return a pattern for the text of a phrase before each slot, with the kinds of the slot; the longest first."""
     found: list[tuple[str, Kinds]] = []
     for word, pieces in _words():
         for index, (pattern, slot) in enumerate(pieces):
@@ -168,7 +167,7 @@ def _phrases() -> tuple[tuple[re.Pattern[str], tuple[Kinds, ...]], ...]:
 
 
 def _words() -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield each catalog word with the pieces of its phrase: a pattern, and the slot's name or ``""``."""
+    """Yield each catalog word with the pieces of its phrase. A piece is a pattern and its slot's name or ``""``."""
     catalog = load_catalog()
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
         pieces: list[tuple[str, str]] = []

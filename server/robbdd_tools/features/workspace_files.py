@@ -1,4 +1,4 @@
-"""The model files of a folder on disk, open or not."""
+"""Find the model files below folders on disk, whether or not they are open."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Search the names declared in all model files of the workspace, open or not.
+"""Search the names that all model files of the workspace declare, whether or not they are open.
 
-Of an unopened file, only the words of its names are found (``syntax/sound_names``). A declaration is parsed if its
-words fit the query, or if it may have a syntax error: the parser then repairs it, and may find further names.
+In an unopened file, only the words of names are read first (``syntax/sound_names``). A declaration is parsed if its
+words fit the query, or if it may have a syntax error, because the parser may find more names when it repairs the error.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 
 Words = tuple[int, tuple[str, ...]]
-"""The maximum number of names in the qualified names of a declaration, and the names: first that of the declaration.
+"""The maximum number of names in a qualified name of a declaration, and the names, the declaration's own name first.
 
-If the number is 0, these are the qualified names.
+If the number is 0, the names are already qualified.
 """
 _DEPTHS = {"scene": 2, "bddx": 1, "scenex": 5, "ktree": 5}
-"""Maximum number of names in a qualified name: a pose is in a frame of a body of a graph of a scene instance."""
+"""Language → maximum number of names in a qualified name, such as scene instance, graph, body, frame and pose."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ def _fitting(snapshot: Snapshot, uri: str, letters: str) -> Iterator[Named]:
 
 
 def _on_disk(uri: str, letters: str) -> Iterator[Named]:
-    """Yield the fitting names of an unopened file, those of one path together."""
+    """Yield the fitting names of an unopened file. Names with the same path are yielded together."""
     state = file_state(uri)
     words = () if state is None else _words_of(state)
     fitting = [number for number, own in enumerate(words) if _may_fit(own, letters)]
@@ -81,7 +81,7 @@ def _on_disk(uri: str, letters: str) -> Iterator[Named]:
     document, language = Document(uri, 0, text), language_of(uri)
     chunks = split_once(language, text)
     found: dict[str, list[Named]] = {}
-    # The file may have been written since its words were read.
+    # The file may have changed since its words were read.
     for chunk in (chunks[number] for number in fitting if number < len(chunks)):
         checkpoint()
         for symbol in parse_declaration(language, chunk.text).symbols:
@@ -109,13 +109,13 @@ def _words_in(language: str, text: str) -> Words:
     words = sound_names(language, text)
     if words is None:
         return 0, tuple(dict.fromkeys(symbol.path.lower() for symbol in parse_declaration(language, text).symbols))
-    # A clause of a scenario of a story has three names, a part of any other declaration two.
+    # The qualified name of a clause in a story's scenario has three names. In other declarations, parts have two.
     depth = _DEPTHS.get(language) or (3 if text.startswith("User") else 2)
     return depth, tuple(map(_lower, words))
 
 
 def _may_fit(words: Words, letters: str) -> bool:
-    """Return whether a qualified name of a declaration may contain letters in their order."""
+    """Return whether a qualified name of a declaration may contain the letters in the given order."""
     depth, names = words
     if not depth:
         return any(_has_letters(path, letters) for path in names)
@@ -127,12 +127,12 @@ def _may_fit(words: Words, letters: str) -> bool:
 
 
 def _lower(text: str) -> str:
-    """Return a text in lower case, whatever follows it: only a sigma has another form at the end of a word."""
+    """Return a text in lower case that does not depend on the following text, unlike a sigma at the end of a word."""
     return text.lower().replace("ς", "σ")
 
 
 def _letters_in(text: str, letters: str, place: int) -> int:
-    """Return how many letters a text and the texts before it contain in their order, if those contain ``place``."""
+    """Return how many letters earlier texts and this one contain in order. Earlier texts contain ``place`` of them."""
     position = 0
     while place < len(letters) and (position := text.find(letters[place], position) + 1):
         place += 1

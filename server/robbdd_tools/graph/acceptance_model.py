@@ -16,7 +16,7 @@ from robbdd_tools.monitor.time import TimeConstraint
 
 
 class Iri(str):
-    """An IRI, as opposed to a string of the user."""
+    """An IRI. Its type distinguishes it from a string of the user."""
 
     __slots__ = ()
 
@@ -25,7 +25,7 @@ Value = Iri | str | int | float
 """An element, a string or a number."""
 
 Cell = Value | tuple[Value, ...]
-"""Value of one variable in one scenario: a value, or a set of values in written order."""
+"""The content of a variable in one scenario: a single value, or a set of values in written order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +111,8 @@ class BehaviourClause:
     - ``start`` and ``end``: the events of its duration.
     - ``node``: the node of a behaviour tree that executes it, if any.
     - ``emits``: maps the behaviour's own events (``pick-end``) to events of the model, in written order.
-    - ``together``: the clause of the behaviour at the same time as which it is executed (``meanwhile``), if any.
-    - ``has_siblings``: true if its template has several behaviours.
+    - ``together``: the clause of the earlier behaviour that is executed at the same time (``meanwhile``), if any.
+    - ``has_siblings``: true if the template has several behaviours.
     """
 
     iri: Iri
@@ -179,7 +179,7 @@ def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """All sets of some size that can be selected from a set. ``kind`` is ``combinations`` or ``permutations``."""
+    """All sets of one size that can be selected from a set. ``kind`` is ``combinations`` or ``permutations``."""
 
     kind: str
     source: tuple[Value, ...]
@@ -339,7 +339,7 @@ class AcceptanceModel:
     implementations: tuple[Implementation, ...] = ()
 
     def curie(self, iri: str) -> str:
-        """Shorten an IRI by the longest namespace that it starts with. If there is none, return the IRI unchanged."""
+        """Return an IRI as a CURIE of the longest matching namespace. If none matches, return the IRI itself."""
         best = max(
             ((namespace, prefix) for prefix, namespace in self.prefixes.items() if iri.startswith(namespace)),
             key=lambda pair: len(pair[0]),

@@ -12,8 +12,8 @@ def part_numbers(clauses: Iterable[Clause]) -> tuple[int, ...]:
     """Return the number of the part (from 0) to which each clause of a body belongs.
 
     A Given clause belongs to the part after it, and a Then clause to the part before it. The behaviours of a When and
-    the events before them are one part. A Given clause after the last part has the number of a part that does not
-    exist.
+    the events before them are one part. A Given clause after the last part gets the next number,
+    although there is no such part.
     """
     return tuple(_numbers(clauses))
 
@@ -36,18 +36,18 @@ def _numbers(clauses: Iterable[Clause]) -> Iterator[int]:
 
 
 def count_of_parts(clauses: Iterable[Clause], numbers: Iterable[int]) -> int:
-    """Return the number of parts of a body. ``numbers`` are those of its clauses."""
+    """Return the number of parts of a body. ``numbers`` are the part numbers of its clauses."""
     whens = (number for clause, number in zip(clauses, numbers, strict=True) if is_when_clause(clause))
     return max(whens, default=-1) + 1
 
 
 def is_when_clause(clause: Clause) -> bool:
-    """Return whether a clause is a behaviour, an event of a When, or a loop, and not a condition."""
+    """Return whether a clause is a behaviour, an event of a When, or a loop. All other clauses are conditions."""
     return isinstance(clause, BehaviourClause | EventClause | ForAll)
 
 
 def with_siblings(clauses: Sequence[Clause]) -> tuple[Clause, ...]:
-    """Return the clauses of a template in which the behaviours are marked if there are several of them."""
+    """Return the clauses of a template. If there are several behaviours, they are marked."""
     several = len(list(behaviour_clauses(clauses))) > 1
     return tuple(map(_marked, clauses)) if several else tuple(clauses)
 

@@ -25,7 +25,7 @@ _LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
 class Setting:
     """A setting whose value is a list of strings.
 
-    ``offset`` is the position of its key in ``file``. ``faults`` are the reasons why it cannot be used.
+    ``offset`` is the position of its key in ``file``. ``faults`` are the reasons why the setting cannot be used.
     """
 
     file: Path

@@ -1,4 +1,4 @@
-"""The properties of elements: those that scenes declare, and those that imported graphs state.
+"""Find the properties of elements that scenes declare, and those that imported graphs state.
 
 In a model, a property is known by its name without the namespace: ``colour`` stands for every property of this name.
 """
@@ -38,7 +38,8 @@ _NUMBERS = tuple(
 class Fact:
     """One value of a property of an element.
 
-    ``element`` and ``term`` are IRIs; ``name`` is the name of the property. ``written`` is its place in a declaration.
+    ``element`` and ``term`` are IRIs; ``name`` is the name of the property. ``written`` is the place of the value in a
+    declaration.
     """
 
     element: str
@@ -49,7 +50,7 @@ class Fact:
 
 
 def property_name(term: str) -> str | None:
-    """Return the name of a property, given its IRI; ``None`` for terms of RDF and of the published vocabulary."""
+    """Return the name of a property with the given IRI; ``None`` for terms of RDF and of the published vocabulary."""
     match = _LOCAL.search(term, max(term.rfind(sign) for sign in "/#:") + 1)
     return None if match is None or term[: match.start()] in _OF_VOCABULARIES else match[0]
 
@@ -137,7 +138,7 @@ def written_value(placed: PlacedDeclaration, written: tree.PropertyValue) -> Pro
 
 
 def conditions_of(placed: PlacedDeclaration, where: tree.Where) -> tuple[PropertyCondition, ...] | None:
-    """Return the conditions in a declaration; ``None`` if one of them compares with an unknown name."""
+    """Return the conditions in a declaration, or ``None`` if one of them contains an unknown name."""
     found: list[PropertyCondition] = []
     for written in where.conditions:
         value = TRUE if written.value is None else written_value(placed, written.value)

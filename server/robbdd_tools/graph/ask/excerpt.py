@@ -22,9 +22,10 @@ class Part:
 def limited(structure: Structure, most: int, wanted: Iterable[str]) -> Part:
     """Return an excerpt of at most ``most`` nodes.
 
-    ``wanted`` are IRIs, the most important one first. A larger structure is reduced to the story that leads to the
-    first of them that exists or, if none exists, to the first story. If the story is too large, it is reduced to its
-    variant, and this one to its template. If the template is too large, too, only its first ``most`` nodes remain.
+    ``wanted`` are IRIs, the most important one first. A larger structure is reduced to one story: the story that leads
+    to the first existing wanted node or, without such a node, the first story. If the story is too large, it is reduced
+    in the same way to one of its variants, and this to its template. If the template is too large, too, only its first
+    ``most`` nodes remain.
     """
     nodes = {node.iri: node for node in structure.nodes()}
     if len(nodes) <= most:

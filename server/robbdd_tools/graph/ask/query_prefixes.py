@@ -24,8 +24,8 @@ _MORE_PREFIXES = {
 def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
     """Return the prefixes of a query, and a remark on each prefix that may have an unexpected meaning.
 
-    If a prefix of the model has the name of a prefix of the vocabulary, the model's namespace is used, unless all terms
-    that the query writes with it belong to the vocabulary.
+    A prefix may belong both to the model and to the vocabulary. It then means the model's namespace, unless the query
+    uses it only for terms of the vocabulary.
     """
     own = user_prefixes(graph)
     taken: dict[str, str] = {}
@@ -52,7 +52,7 @@ def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
 
 
 def _uses(graph: Graph, text: str, prefix: str, namespace: str) -> bool:
-    """Return whether a query uses a term of a namespace by a prefix that the query does not declare."""
+    """Return whether a query writes an existing term of a namespace with a prefix that the query does not declare."""
     from rdflib import URIRef
 
     if re.search(rf"\bPREFIX\s+{re.escape(prefix)}\s*:", text, re.IGNORECASE):

@@ -25,7 +25,7 @@ JOINED = {
     "bdd:ForAll": "for all",
     "bdd:ThereExists": "there is",
 }
-"""Class of a nested clause → its label in a picture."""
+"""Class of a nested clause → the clause's label in a picture."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """Draw the structure of a graph with one column each for stories, variants, templates, clauses and events.
 
-Below the events are the nodes of behaviour trees, each one below its parent. Every link leads from a column to one
-further right, so the layout only chooses heights. Clauses are stacked in written order, and every other node is centred
-on the nodes that it links to. A library for layered layout would have nothing left to decide.
+Below the events are the nodes of behaviour trees, each one below its parent. Every link leads from a column to
+a column further right, so the layout only chooses heights. Clauses are stacked in written order, and every other node
+is centred on the nodes that it links to. A library for layered layout would have nothing left to decide.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ COLOURS = {
     "event": "#f6f2c4",
     "node": "#e3e3e3",
 }
-"""Fill of each concept: tints distinguishable with any colour vision; each concept also has its own shape."""
+"""Fill of each concept. The tints are distinguishable with any colour vision, and each concept has its own shape."""
 STROKES = {
     "story": "#0060a0",
     "variant": "#a06a00",
@@ -45,10 +45,10 @@ WORDS = {
     "node": "Tree node",
 }
 COLUMNS = (("story", 210), ("variant", 180), ("template", 190), ("clause", 300), ("event", 170))
-"""Columns from the left with their widths, px."""
+"""Columns from left to right with their widths in px."""
 SPACE, MARGIN, LINE, PADDING, GAP, INDENT = 70, 24, 16, 8, 12, 18
 LETTER = 6.4
-"""Mean width of a letter at 12 px, px; text is wrapped by it because no font metrics are available."""
+"""Mean width (px) of a letter at 12 px. Text is wrapped by this width, because font metrics are not available."""
 STYLE = (
     "text{font:12px 'DejaVu Sans',Verdana,Arial,sans-serif;fill:#1b1b1b}"
     ".name{font-weight:bold}.role{font-size:10px;letter-spacing:.04em}"
@@ -149,7 +149,7 @@ def _stack(
     boxes: dict[str, _Box],
     lefts: Mapping[str, tuple[float, float]],
 ) -> None:
-    """Place the nodes of a layer. Each node is centred on the nodes that it is linked to, as far as there is room."""
+    """Place the nodes of a layer. If there is room, each node is centred on the nodes to which it is linked."""
     wanted: list[tuple[float, int, _Box]] = []
     for number, node in enumerate(nodes):
         middles = [boxes[other].middle for other in beside.get(node.iri, ()) if other in boxes]

@@ -1,6 +1,6 @@
 """Handle terms in queries that graphs of RobBDD express differently or do not use.
 
-The first ones are terms of the metamodel in the 2025 paper.
+Terms of the metamodel in the 2025 paper are expressed differently.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 MAX_KNOWN = 5000
-"""Maximum number of terms searched for a suggestion; more would take seconds."""
+"""Maximum number of terms that are searched for a suggestion. More terms would take seconds."""
 Pattern = tuple[Any, Any, Any]
 
 
@@ -45,7 +45,7 @@ def operators(algebra: Any) -> Iterator[Any]:
 
 
 def with_paper_terms(graph: Graph, asked: list[Pattern]) -> Graph:
-    """Return a graph that also has the triples of the 2025 paper's metamodel, if a query uses its ``bdd:holds-at``.
+    """If a query uses ``bdd:holds-at``, return the graph with additional triples of the 2025 paper's metamodel.
 
     In the paper, a clause has a time constraint (``bdd:holds-at``), and a template has clauses (``bdd:has-clause``). In
     our graphs, as in those of the published tools, the time constraint is on the clause itself, and the clauses are a

@@ -1,8 +1,8 @@
 """Load JSON-LD contexts by name.
 
-A context is a file in the folder of the model, a context of RobBDD, or a cached one that the user allowed to fetch. The
-addresses of the published metamodels are known. For them, the context of RobBDD is used, which includes terms of older
-versions.
+A context is a file in the folder of the model, the context of RobBDD, or a cached context that the user allowed to
+fetch. The addresses of the published metamodels are known. For them, the context of RobBDD is used, which includes
+terms of older versions.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from robbdd_tools.catalog.term_prefixes import METAMODELS
 Json = dict[str, Any]
 CONTEXT_FILE = "context.jsonld"
 CONTEXT_IRI = f"https://robbdd.org/metamodels/{CONTEXT_FILE}"
-"""Name of our context, which is available without network; so is ``context.jsonld`` next to a model."""
+"""Name of our context. Like ``context.jsonld`` next to a model, it is available without network."""
 _PUBLISHED = frozenset(
     {
         *("agent", "bdd", "behaviour", "behaviour-tree", "environment", "event", "execution-context"),
         *("observation", "python", "task", "time"),
     }
 )
-"""Names of the published files whose terms our context includes."""
+"""Names of the published context files whose terms our context includes."""
 _OLDER = {
     "holds": "bdd:holds",
     "holds-at": "bdd:holds-at",
@@ -48,9 +48,9 @@ _OLDER = {
     "ref-event": "time:ref-event",
     "of-constraint": "time:of-constraint",
 }
-"""Terms of older published metamodels, kept so that no triple is lost."""
+"""Terms of older published metamodels. They are included so that no triple is lost."""
 TIMEOUT = 20.0
-"""Maximum time for a server's answer, s."""
+"""Maximum time (s) for a server's answer."""
 _WANTED = "application/ld+json, application/json;q=0.9"
 
 
@@ -93,7 +93,7 @@ class ContextLoader:
             raise UnknownContext(f"the context '{url}' is neither a file nor a web address")
         own = None if self.folder is None else file_for(url, self.folder)
         stated = None if own is None else _local(url, own)
-        # A model with the name of a published context, such as environment.json, does not replace the context.
+        # A model may have the name of a published context, such as environment.json. It does not replace the context.
         if stated is not None and not (is_published(url) and _has_nodes(stated)):
             return stated
         if is_published(url):
@@ -163,7 +163,7 @@ def bundled_context() -> Json:
 
 
 def is_published(url: str) -> bool:
-    """Return whether an address is the address of a context of the published metamodels, in any of their layouts."""
+    """Return whether an address belongs to a context of the published metamodels, in any layout."""
     if not url.startswith(METAMODELS):
         return False
     path = PurePosixPath(urlsplit(url).path)
@@ -172,7 +172,7 @@ def is_published(url: str) -> bool:
 
 @cache
 def published_context() -> Json:
-    """Return the context that replaces all published ones. As in these, values are named by strings."""
+    """Return the context that replaces all published contexts. As in these, strings name the values."""
     named = {"@type": "@id", "@container": "@list"}
     values = {"elements": {"@id": "bdd:elements", "@type": "@id"}}
     values |= {term: {"@id": f"bdd:{term}", **named} for term in ("of-sets", "rows")}
@@ -181,7 +181,7 @@ def published_context() -> Json:
 
 
 def file_for(url: str, folder: Path) -> Path | None:
-    """Return the file in a folder whose path matches the end of a web address; the longest match is used."""
+    """Return the file in a folder whose path matches the longest end of a web address."""
     parts = PurePosixPath(urlsplit(url).path).parts[1:]
     candidates = (folder.joinpath(*parts[start:]) for start in range(len(parts)) if ".." not in parts)
     return next((path for path in candidates if path.is_file()), None)

@@ -52,7 +52,7 @@ def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[J
 
 
 class UnusableShapes(Exception):
-    """The shapes cannot be used because pyshacl rejects them. ``message`` is its reason."""
+    """The shapes cannot be used because pyshacl rejects them. ``message`` is the reason that pyshacl gives."""
 
 
 def shacl_report(graph: Graph, shapes: Graph) -> Graph:
@@ -63,7 +63,7 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
     import pyshacl
 
     _keep_sparql_off_the_network()
-    # It also logs what it raises.
+    # pyshacl also logs the errors that it raises.
     logging.getLogger("pyshacl-validate").disabled = True
     try:
         outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
@@ -75,13 +75,13 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
 
 
 def _keep_sparql_off_the_network() -> None:
-    """Prevent SPARQL in shapes from contacting a server by ``SERVICE`` or ``FROM``, whatever their spelling."""
+    """Prevent SPARQL in shapes from contacting a server by ``SERVICE`` or ``FROM``, in any spelling."""
     from rdflib.plugins import sparql
 
     def refuse_service(_context: object, part: Any) -> Any:
         if part.name == "ServiceGraphPattern":
             raise UnusableShapes("a SPARQL query in a shape can read only this model: SERVICE is not supported")
-        raise NotImplementedError  # the signal by which rdflib evaluates the part itself
+        raise NotImplementedError  # This signal makes rdflib evaluate the part itself.
 
     loose: Any = sparql
     loose.SPARQL_LOAD_GRAPHS = False
@@ -89,7 +89,7 @@ def _keep_sparql_off_the_network() -> None:
 
 
 def json_object(value: Any) -> Json:
-    """Return a JSON value if it is an object, else an empty one."""
+    """Return a JSON value if it is an object, otherwise an empty object."""
     return cast(Json, value) if isinstance(value, dict) else {}
 
 
@@ -100,7 +100,7 @@ def _jsonld() -> Any:
 
 
 def _reason(error: BaseException) -> str:
-    """Return the message of the error that has caused a JSON-LD error, with the part of the document if it is known."""
+    """Return the message of the cause of a JSON-LD error, with the part of the document, if known."""
     while isinstance(cause := getattr(error, "cause", None) or error.__cause__, BaseException):
         error = cause
     message = str(error.args[0] if error.args else error).partition("\n")[0].rstrip(".")

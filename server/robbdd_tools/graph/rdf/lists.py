@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class Lists:
     """The well-formed lists of a graph.
 
-    A cell of such a list is a blank node with exactly one first, one rest and no other property.
+    A cell of such a list is a blank node with exactly one ``rdf:first``, one ``rdf:rest`` and no other property.
     """
 
     def __init__(self, graph: Graph) -> None:
@@ -40,7 +40,7 @@ class Lists:
         return () if head == self._nil else self._lists.get(head)
 
     def is_cell(self, node: Node) -> bool:
-        """Return whether a node is a cell of a well-formed list and nothing else."""
+        """Return whether a node is nothing but a cell of a well-formed list."""
         return node in self._cells
 
     def _is_used_once(self, graph: Graph, head: Node) -> bool:

@@ -1,4 +1,4 @@
-"""Prefixes of a graph: first the names of the user, then those of the vocabulary that are not yet taken."""
+"""Prefixes of a graph: first the prefixes of the user, then the prefixes of the vocabulary that are not yet taken."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
             bound.add(namespace)
             taken[prefix_for(name, taken)] = namespace
     for prefix, namespace in taken.items():
-        # Graph.bind also indexes the namespace, in time proportional to their number, which only serializers need.
+        # Graph.bind also indexes the namespace for serializers, in time proportional to the number of namespaces.
         graph.store.bind(prefix, URIRef(namespace))
     return taken
 
@@ -49,7 +49,7 @@ def user_prefixes(graph: Graph) -> dict[str, str]:
 def reading_prefixes(graph: Graph) -> dict[str, str]:
     """Return the prefixes of a graph, and generated prefixes for its other namespaces, so that all names are short.
 
-    The local names of elements determine which models of the catalog simulate them.
+    Short names matter because the local names of elements select the models of the catalog that simulate them.
     """
     from rdflib import URIRef
 

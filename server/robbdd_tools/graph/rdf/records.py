@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Incomplete(Exception):
-    """A part of a graph lacks something that is necessary, so it is left out."""
+    """A part of a graph is incomplete, so it is left out."""
 
 
 class Records:
@@ -36,7 +36,7 @@ class Records:
         for subject, predicate, value in graph:
             subjects[str(subject)] = subject
             values.setdefault(str(subject), {}).setdefault(str(predicate), []).append(value)
-        # Only what has an order to be defined is sorted: sorting all triples takes several times as long.
+        # Only subjects, and values of one property, are sorted: sorting all triples takes several times as long.
         for node in sorted(subjects, key=lambda name: sort_text(subjects[name])):
             self._values[node] = values[node]
             for several in values[node].values():
@@ -125,7 +125,7 @@ class Records:
         return first + tuple(value for value in values if value in known)
 
     def iris(self, nodes: Iterable[Node]) -> tuple[Iri, ...]:
-        """Return those of some nodes that are IRIs."""
+        """Return the nodes that are IRIs, without all other nodes."""
         return tuple(Iri(node) for node in nodes if not isinstance(node, self._literal))
 
     def value(self, node: Node) -> Value:

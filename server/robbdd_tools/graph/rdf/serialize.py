@@ -62,7 +62,7 @@ def serialize(graph: Graph, format: str) -> str:
     if format == "json-ld-expanded":
         return printable_json(expanded(ordered), indent=2) + "\n"
     if format == "nt":
-        # Not splitlines, which also splits at control characters within a text.
+        # splitlines is not used, because it also splits at control characters within a text.
         lines = ordered.serialize(format="nt").rstrip("\n").split("\n")
         return printable_terms("".join(sorted(f"{line}\n" for line in lines if line)))
     text = (
@@ -131,7 +131,7 @@ def _by_story(nodes: list[Json], context: Json) -> list[Json]:
 
 
 def _once(value: Any, described: set[str]) -> Any:
-    """Replace repeated descriptions by references, because a list that is written twice would become two lists."""
+    """Replace repeated descriptions of a node by references. Otherwise, a list in them would become several lists."""
     if isinstance(value, list):
         return [_once(item, described) for item in cast("list[Any]", value)]
     fields = json_object(value)
@@ -183,7 +183,7 @@ def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterato
 
 
 def _fault(error: Exception) -> tuple[str, int]:
-    """Return the reason and the position of a parser's error, which each parser reports differently."""
+    """Return the reason and the position of a parser's error. Each parser reports them in another way."""
     if isinstance(error, json.JSONDecodeError):
         return error.msg, error.pos
     why, offset = getattr(error, "_why", None), getattr(error, "_i", None)

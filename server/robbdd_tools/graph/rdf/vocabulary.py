@@ -11,7 +11,7 @@ from functools import cache
 from robbdd_tools.catalog.term_prefixes import PREFIXES
 
 SHAPES = "https://robbdd.org/metamodels/shapes#"
-"""Namespace of our SHACL shapes; a shape's local name is the diagnostic code without ``shacl-``."""
+"""Namespace of our SHACL shapes. The local name of a shape is its diagnostic code without ``shacl-``."""
 
 TIME_TYPES = {
     "before": "time:BeforeEventConstraint",
@@ -21,18 +21,18 @@ TIME_TYPES = {
 QUANTITY = "https://w3id.org/cdt/ucum"
 """Datatype of a number with a unit (Custom Datatypes, https://w3id.org/cdt/)."""
 SOME_TIME = "rbw:AtSomeTime"
-"""Class of a time constraint that must hold at some time in its window instead of throughout."""
+"""Class of time constraints under which a clause must hold at some time in the window instead of throughout."""
 OCCURRENCE = "rbw:occurrence"
 HORIZON_VARIABLE = "rbw:horizon-variable"
 EVENT_LIST = "rbw:defined-events"
-"""The events that a template defines by conditions, in written order."""
+"""Property: the list of the events that a template defines by conditions, in written order."""
 TOGETHER = "rbw:together-with"
-"""The behaviour in the same When, written before it, at the same time as which a behaviour is executed."""
+"""Property: the earlier behaviour of the same When that is executed at the same time as a behaviour."""
 REQUIREMENT = "rbw:Requirement"
 VERIFIES = "rbw:verifies"
-"""The requirements that a story, a scenario, a template or a clause verifies."""
+"""Property: the requirements that a story, a scenario, a template or a clause verifies."""
 FURTHER_BEHAVIOUR = "rbw:further-behaviour"
-"""The behaviours of a scenario besides the first one."""
+"""Property: the behaviours of a scenario after the first one."""
 ELEMENT_TYPES = {"object": "env:Object", "workspace": "env:Workspace", "agent": "agn:Agent"}
 """Kind of an element → its class."""
 MEMBERSHIPS = {
@@ -43,7 +43,7 @@ MEMBERSHIPS = {
 """Kind of an element → class, property and IRI suffix of the node that adds such elements to a scene."""
 JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
 NAMED_USE = "rbw:NamedPredicateUse"
-"""Class of a clause, or of a condition, whose predicate the model itself defines."""
+"""Class of clauses and conditions whose predicate the model itself defines."""
 STATES = {"and": "rbw:AllStates", "or": "rbw:AnyState", "not": "rbw:NegatedState"}
 """Operator in the definition of a predicate → its class."""
 COMPOSITES = {"sequence": "bt:Sequence", "selector": "bt:Selector"}

@@ -38,7 +38,7 @@ def _nowhere(_: str) -> None:
 def read_model(graph: Graph, places: Places = _nowhere, records: Records | None = None) -> AcceptanceModel:
     """Return the acceptance criteria of a graph, in written order if the graph records this order.
 
-    ``places`` returns the source positions of nodes. ``records`` are those of the graph if they are known. A variant is
+    ``places`` returns the source positions of nodes. ``records`` are the graph's records, if known. A variant is
     left out if something is missing, for example its template, the value of a variable or a known predicate.
     """
     records = records or Records(graph)
@@ -69,7 +69,7 @@ def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> 
 def read_instances(
     graph: Graph, places: Places = _nowhere, records: Records | None = None
 ) -> tuple[SceneInstance, ...]:
-    """Return the scene instances of a graph, in the order of their IRIs. ``records`` are those of the graph."""
+    """Return the scene instances of a graph in IRI order. ``records`` are the graph's records, if known."""
     records = records or Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = InstanceReader(records, sets, places)
@@ -140,7 +140,7 @@ class _Reader:
 
     def _extra_clauses(self, node: Iri) -> tuple[Clause, ...]:
         stated = self.records.all(node, "bdd:has-clause")
-        # A published graph of a variant without clauses of its own has an empty node instead of the list.
+        # In published graphs, a variant without its own clauses has an empty node instead of the list.
         if not stated or self.records.is_blank(stated[0]):
             return ()
         return self.clauses.clauses(node)

@@ -126,7 +126,7 @@ class ClauseReader:
         return DefinedEvent(iri, conditions, seconds or 0.0, *variables)
 
     def _conditions(self, owner: Iri, term: str) -> tuple[Condition, ...]:
-        """Return the conditions of a clause or event. The numbers of generated names are their order."""
+        """Return the conditions of a clause or event, in the order of the numbers in their generated names."""
         nodes = self.records.iris(self.records.all(owner, term))
         return tuple(self.condition(node) for node in sorted(nodes, key=lambda node: (len(node), node)))
 
@@ -180,7 +180,7 @@ class ClauseReader:
         return After(self.records.one(iri, "time:after-event"), seconds, some_time=some_time, which=which)
 
     def _seconds(self, iri: Iri) -> Iri | None:
-        """Return the variable of a clause's horizon, if any."""
+        """Return the variable whose value is a clause's horizon, if any."""
         if not self.records.all(iri, HORIZON_VARIABLE):
             return None
         if self.records.all(iri, "time:horizon-seconds") or not isinstance(self.time(iri), Before | After):
@@ -189,7 +189,7 @@ class ClauseReader:
 
 
 def _checked(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
-    """Return clauses. Raises ``Incomplete`` if a behaviour is together with another one than that before it."""
+    """Return the clauses. Raises ``Incomplete`` if a behaviour's ``together`` is not the last behaviour before it."""
     before: tuple[int, Iri] | None = None
     for clause, number in zip(clauses, part_numbers(clauses), strict=True):
         if isinstance(clause, BehaviourClause):
@@ -209,7 +209,7 @@ def names_in_events(events: Iterable[DefinedEvent]) -> Iterator[Iri]:
 
 
 def named_elements(model: AcceptanceModel, variant: Variant) -> tuple[Iri, ...]:
-    """Return the elements that the clauses and events of a variant and its template name, in order."""
+    """Return the elements that clauses and events name in a variant and its template, in order."""
     template = variant.template
     names = (*used_names((*template.clauses, *variant.clauses)), *names_in_events(template.events))
     return tuple(dict.fromkeys(name for name in names if name in model.kinds))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import Value
 
 Places = Callable[[str], Origin | None]
-"""Returns the source position of a node, ``None`` if unknown."""
+"""Returns the source position of a node, or ``None`` if it is unknown."""
 _LAWS = {
     "rbw:UniformRotation": "uniform-rotation",
     "rbw:UniformDistribution": "uniform",
@@ -219,7 +219,7 @@ class InstanceReader:
         return None if opening == OpeningModel() else opening
 
     def _friction(self, node: Iri) -> Iterator[Friction]:
-        """Yield the friction of each pair of elements that two elements or sets form."""
+        """Yield the friction between two elements or sets for each pair of elements."""
         records = self._records
         value = number(records, node, "rbw:coefficient")
         try:

@@ -1,4 +1,4 @@
-"""Read named predicates: a phrase with parameters that is defined by other predicates."""
+"""Read named predicates. Such a predicate is a phrase with parameters, which other predicates define."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ PLACEHOLDER = re.compile(r"<[^<>]*>")
 
 
 def read_use(records: Records, iri: Iri, inside: tuple[Iri, ...] = ()) -> tuple[Predicate, Mapping[str, Iri | str]]:
-    """Return the named predicate of a clause or of a condition, and what fills its parameters.
+    """Return the named predicate of a clause or of a condition, and the values of its parameters.
 
-    ``inside`` are the predicates whose definitions contain it. Raises ``Incomplete``.
+    ``inside`` are the predicates whose definitions contain the clause or condition. Raises ``Incomplete``.
     """
     named = read_named(records, records.one(iri, "rbw:named-predicate"), inside)
     values = [read_value(records, node) for node in records.list_of(iri, "rbw:argument-list")]
@@ -57,7 +57,7 @@ def read_named(records: Records, iri: Iri, inside: tuple[Iri, ...] = ()) -> Pred
 
 
 def slot_names(parameters: Sequence[str]) -> list[str]:
-    """Return a different name for each parameter, which an identifier may be: the last word of its IRI if possible."""
+    """Return a unique identifier for each parameter: the last word of its IRI, if possible."""
     found: list[str] = []
     for number, parameter in enumerate(parameters, start=1):
         name = re.sub(r"\W", "_", re.split(r"[./#:]", parameter)[-1])
@@ -66,7 +66,7 @@ def slot_names(parameters: Sequence[str]) -> list[str]:
 
 
 def read_arguments(records: Records, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
-    """Return what fills the slots of a phrase of the catalog. Raises ``Incomplete``."""
+    """Return the terms that fill the slots of a catalog phrase. Raises ``Incomplete``."""
     return {
         slot.name: records.text(iri, slot.property)
         if slot.kind is Kind.NAME or (slot.kind in _LITERALS and _has_literal(records, iri, slot.property))
@@ -76,7 +76,7 @@ def read_arguments(records: Records, iri: Iri, slots: Iterable[Slot]) -> Mapping
 
 
 def required_parts(clause: Fluent) -> Iterator[Fluent]:
-    """Yield a clause for each predicate of the catalog that must hold for the named predicate of a clause to hold."""
+    """Yield, for a clause with a named predicate, a clause for each catalog predicate that this predicate requires."""
     for predicate, fillers in () if clause.named is None else required(clause.named, clause.arguments):
         arguments = {name: Iri(filler) if isinstance(filler, Element) else filler for name, filler in fillers.items()}
         yield replace(clause, predicate=predicate.name, arguments=arguments, named=None)

@@ -19,7 +19,7 @@ ELEMENT_OF_KIND = {
     Kind.AGENT: "agent",
     Kind.ANY: "element",
 }
-"""Kind of a slot → element kind of its variable, or of each element of its set."""
+"""Kind of a slot → the kind of the element in its variable, or of each element in its set."""
 HORIZON = "horizon"
 """Kind of a variable that is a number of seconds."""
 
@@ -42,7 +42,7 @@ def assignment_class(kind: str) -> str:
 
 
 def value_shape(dimension: str) -> str:
-    """Return the name of the shape of values that are quantities of one dimension."""
+    """Return the name of the shape for values that are quantities of one dimension."""
     return f"{dimension.replace(' ', '-')}-value"
 
 
@@ -69,7 +69,7 @@ def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
 
 
 def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]:
-    """Return the catalog words of which a clause is an instance."""
+    """Return the catalog words that a clause uses."""
     types = records.types(clause)
     catalog = load_catalog()
     if expand("bdd:WhenBehaviour") in types:
@@ -81,7 +81,7 @@ def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]
 
 
 def _add_named(records: Records, use: Iri, roles: Roles, inside: tuple[Iri, ...] = ()) -> None:
-    """Add the kinds of what fills the parameters of a named predicate: those of the parameters in its definition."""
+    """Add kinds for the values of a named predicate: the kinds that its parameters have in the definition."""
     for predicate in records.iris(records.all(use, "rbw:named-predicate")):
         if predicate in inside:
             continue
@@ -100,7 +100,7 @@ def _add_named(records: Records, use: Iri, roles: Roles, inside: tuple[Iri, ...]
 
 
 def states_below(records: Records, states: Iterable[Iri]) -> Iterator[Iri]:
-    """Yield the nodes of the definition of a predicate once, outer ones first."""
+    """Yield each node in the definition of a predicate once, outer nodes first."""
     seen: dict[Iri, None] = {}
     waiting = list(states)
     while waiting:

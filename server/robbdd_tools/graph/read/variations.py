@@ -34,9 +34,9 @@ class VariationReader:
         return Product(variables, tuple(self._fitting(variable, choices) for variable, choices in pairs))
 
     def _fitting(self, variable: Iri, choices: tuple[Cell, ...] | Selection) -> tuple[Cell, ...] | Selection:
-        """Return the choices for a variable; a selection of sets of one element may become the elements themselves.
+        """Return the choices for a variable. If it is not a set, a selection of one element becomes the elements.
 
-        This is done if the variable is not a set, because published graphs select one element for such a variable.
+        Published graphs write such a selection for a variable that is not a set.
         """
         single = isinstance(choices, Selection) and choices.length == 1 and not self.records.is_a(variable, "bdd:Set")
         return choices.source if isinstance(choices, Selection) and single else choices

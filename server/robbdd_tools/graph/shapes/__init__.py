@@ -1,1 +1,1 @@
-"""SHACL: the shapes, the statements that are derived for them, and the mapping of their findings to text."""
+"""SHACL: the shapes, the statements that the shapes need, and the mapping of findings to text."""

@@ -28,7 +28,7 @@ class _Choice:
 def add_assignments(derived: Derived, variant: Iri) -> None:
     """Derive the assignments of a variant to the variables of its template.
 
-    Variables that only the variation of the variant names are included.
+    This includes variables that only the variation of the variant names.
     """
     records = derived.records
     templates = records.iris(records.all(variant, "bdd:of-template"))

@@ -1,4 +1,4 @@
-"""Generate the shapes of the catalog's words from the slots of these words."""
+"""Generate shapes for the catalog's words from their slots."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _CLASSES = {
     Kind.ANY: "rbw:ElementTerm",
     Kind.VALUE: "bdd:ScenarioVariable",
 }
-"""Class of the values of each slot kind; a bare name is a literal."""
+"""Kind of a slot → the class of its values. A bare name is a literal, so its kind has no class."""
 _FIX = {
     Kind.OBJECT_SET: "name a 'set var' or an 'obj set'",
     Kind.WORKSPACE_SET: "name a 'set var' or a 'ws set'",
@@ -49,7 +49,7 @@ def add_word_shapes(shapes: Graph) -> None:
 
 
 def _add_interval_shapes(shapes: Graph, word: Predicate) -> None:
-    """Add the shapes of a predicate about a duration: a start, an end, and neither *at some time* nor *whenever*."""
+    """Add shapes for a predicate about a duration: it needs a start and an end, but no *at some time* or *whenever*."""
     from rdflib import BNode, Literal, URIRef
     from rdflib.namespace import RDF, SH
 
@@ -78,7 +78,7 @@ def _add_interval_shapes(shapes: Graph, word: Predicate) -> None:
 
 
 def _add_value_shape(shapes: Graph, dimension: str) -> None:
-    """Add the shape of the values of variables that stand for quantities of one dimension."""
+    """Add the shape for the values of variables that are quantities of one dimension."""
     from rdflib import Literal, URIRef
     from rdflib.namespace import RDF, SH
 

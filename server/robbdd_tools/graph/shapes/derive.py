@@ -72,7 +72,7 @@ def _add_words(derived: Derived) -> None:
                 derived.add(clause, "rbw:wanted-values", len(items_of(records, predicate, "rbw:parameters")))
         if records.is_a(clause, "bdd:StringTemplatePredicate"):
             derived.add(clause, "rbw:predicate", expand("bdd:StringTemplatePredicate"))
-    # A parameter fills a slot as a variable does.
+    # A parameter fills a slot in the same way as a variable.
     for parameter in records.instances("rbw:Parameter"):
         for kind in ("bdd:ScenarioVariable", "bdd:Set"):
             derived.add(parameter, "rdf:type", expand(kind))

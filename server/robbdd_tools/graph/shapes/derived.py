@@ -1,4 +1,4 @@
-"""A graph with derived statements, which the shapes need and SHACL cannot compute itself."""
+"""A graph with derived statements. The shapes need these statements, but SHACL cannot compute them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Key = tuple[str, ...]
 
 
 def use_of(word: str) -> str:
-    """Return the class of clauses that use a catalog word."""
+    """Return the class of all clauses that use a catalog word."""
     return f"{WORKBENCH}use-of-{word}"
 
 

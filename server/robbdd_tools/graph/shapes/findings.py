@@ -94,7 +94,7 @@ class FindingWriter:
         return next((self.built.authors[node] for node in nodes if node in self.built.authors), ())
 
     def _locations(self, result: Result) -> tuple[Location, ...]:
-        """Return the most precise known places: those of the value, else of the property, else of the node."""
+        """Return the most precise known places: places of the value, or else of the property, or else of the node."""
         places = self.built.sources.places
         for key in self._keys(result):
             if key in places:
@@ -145,7 +145,7 @@ class FindingWriter:
         return f"'{self._subject(result.focus)}': {message}{self._found(result)}" if self.built.is_read else message
 
     def _found(self, result: Result) -> str:
-        """Describe a value in a foreign graph that is not the IRI of a node although it should be."""
+        """Describe a value in a foreign graph that should be the IRI of a node but is something else."""
         from rdflib import Literal, URIRef
 
         if not result.message.startswith(("'{value}' cannot stand for", "'{value}' is no ")):

@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 AT_ONCE = 60
-"""Number of declarations validated together; newer work may interrupt between two groups."""
+"""Number of declarations that are validated together. Newer work may interrupt between two groups."""
 
 
 class Superseded(Exception):
-    """The validation ends because a newer revision is waiting. The findings so far are cached for it."""
+    """The validation ends early, because a newer revision is waiting. The findings so far are cached for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +98,8 @@ class Validation:
     def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
         """Return the shape files of the project that do not need the whole graph.
 
-        No declaration is responsible for a node that only an imported graph describes: its shapes need the whole graph.
-        If these files have changed, all cached findings are dropped.
+        If graphs are imported, there are none: no declaration is responsible for a node that only an imported graph
+        describes, so such nodes need the whole graph. If the files have changed, all cached findings are dropped.
         """
         usable = () if self._imported.documents else project.files
         files = tuple(file for file in usable if not file.faults and is_local(file.graph))
@@ -161,7 +161,7 @@ class Validation:
         try:
             return list(results(shacl_report(writer.derived.graph, together(local))))
         except UnusableShapes:
-            # Whole-graph validation determines which file is at fault, and the findings of the others.
+            # The validation of the whole graph determines which file is at fault, and the findings of all other files.
             self._unusable = {file.uri for file in local}
             return []
 

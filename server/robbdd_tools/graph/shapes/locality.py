@@ -1,8 +1,9 @@
 """Determine the shapes that can be checked on the neighbourhood of one declaration, without the whole graph.
 
 Such a shape starts at the instances of a class and follows properties forwards, so it reaches only nodes that the
-declaration uses. The whole graph is needed by a shape with an inverse path, SPARQL or explicit target nodes, and by a
-shape on nodes that several declarations share, or on user stories, whose scenarios are validated one by one.
+declaration uses. A shape needs the whole graph if it has an inverse path, SPARQL or explicit target nodes, or if
+several declarations share its nodes. Shapes on user stories also need the whole graph, because scenarios are validated
+one by one.
 """
 
 from __future__ import annotations
@@ -42,5 +43,5 @@ def is_local(shapes: Graph) -> bool:
 
 
 def _is_common(name: str) -> bool:
-    """Return whether several declarations, or none of the user's, may describe the instances of a class."""
+    """Return whether several declarations may describe the instances of a class, or no declaration of the user does."""
     return name in _COMMON or not name.startswith(METAMODELS)

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Identity = tuple[str, "Declaration", int]
-"""Identity of a declaration across revisions: its document, its text (by identity), its index among equal texts."""
+"""A declaration across revisions, identified by its document, its text object, and its index among equal texts."""
 Fingerprint = tuple[object, ...]
-"""All that findings in a declaration depend on, besides its text and the declarations that it uses."""
+"""All data on which findings in a declaration depend, except its text and the contents of used declarations."""
 
 
 class Neighbourhoods:
@@ -78,9 +78,9 @@ class Neighbourhoods:
         return list(found.values())
 
     def _leads_to(self, entry: Reached) -> list[Reached]:
-        """Return what a declaration needs.
+        """Return the declarations that a declaration needs.
 
-        The head of a story needs a scenario, as a story without scenarios is a finding.
+        The head of a story also needs a scenario, because a story without scenarios is reported.
         """
         used = self.uses.of(entry)
         if entry.is_head:
@@ -98,8 +98,9 @@ class Neighbourhoods:
     def _add_declarers(self) -> None:
         """Record which declarations name the same node.
 
-        If only one of them can have it, each becomes a dependency of the others. If they share it, its first name is
-        recorded. A story without a node is not written, so all its scenarios depend on the node's declarers.
+        If only one of them can have the node, each becomes a dependency of the others. If they share it, the first name
+        of the node is recorded. A story that does not get its node is not written, so all its scenarios depend on the
+        node's declarers.
         """
         for declarers in self.known.contested.values():
             others = [self._by_key[declarer.key] for declarer in declarers]
@@ -118,7 +119,7 @@ class Neighbourhoods:
     def _add_compositions(self) -> None:
         """Record that a composition depends on the compositions of the workspaces in it.
 
-        It depends on them even if it does not name them.
+        This is so even if the composition does not name these compositions.
         """
         compositions = [entry for entry in self.reached if isinstance(entry.tree, tree.Composition)]
         describing: dict[str, list[Reached]] = {}

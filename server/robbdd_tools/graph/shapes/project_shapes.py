@@ -43,8 +43,8 @@ class ShapeFile:
 class ProjectShapes:
     """The shapes of a model's project.
 
-    ``faults`` are errors in the configuration, at their places there. ``remarks`` are diagnostics at the model, for
-    shapes that no configuration file names.
+    ``faults`` are errors in the configuration, placed in its file. ``remarks`` are diagnostics on shapes that no
+    configuration file names, placed in the model.
     """
 
     files: tuple[ShapeFile, ...] = ()
@@ -61,7 +61,7 @@ class EditorShapes:
 
 
 def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShapes:
-    """Return the shapes that the nearest configuration above a model names, and those that an editor adds.
+    """Return the shapes that the nearest configuration above a model names, and the shapes that an editor adds.
 
     The setting is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``.
     Patterns are relative to the folder of the configuration.
@@ -161,7 +161,7 @@ def unchecked(uri: str, faults: tuple[Diagnostic, ...]) -> Iterator[Diagnostic]:
 def broken(file: ShapeFile, error: Exception) -> Diagnostic:
     """Return a diagnostic for pyshacl's error on a file of shapes.
 
-    Its place is the shape that pyshacl names, if any.
+    It is placed at the shape that pyshacl names, if any.
     """
     message = str(getattr(error, "message", "") or error).partition("\n")[0]
     names = sorted((key[0] for key in file.places.places if len(key) == 1 and key[0] in message), key=len)

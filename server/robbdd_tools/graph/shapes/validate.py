@@ -22,7 +22,7 @@ NO_SHAPES = ProjectShapes()
 def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectShapes = NO_SHAPES) -> list[Diagnostic]:
     """Return the SHACL diagnostics of a graph in text order. Each one is placed at the tokens that cause it.
 
-    Unreliable declarations (see ``BuiltGraph``) are skipped, because their error is already reported. ``shapes``
+    Unreliable declarations (see ``BuiltGraph``) are skipped, because their errors are already reported. ``shapes``
     replaces the built-in shapes, and the shapes of a ``project`` are added.
     """
     derived = derive(built.graph, built.records)
@@ -80,7 +80,7 @@ def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]
 def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the faults of a graph file.
 
-    If the findings contain an error, the omission of a variant is not reported, because the error is its cause.
+    If ``found`` contains an error, an omitted variant is not reported, because the error is the cause of the omission.
     """
     has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
     return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))

@@ -42,8 +42,8 @@ _SLOT = re.compile(r"<(\w+)>|[$#](\w+)")
 class ClauseText:
     """Writes the clauses of one owner, which is a template or a variant. ``owner`` is its qualified name.
 
-    ``variables`` maps the available variables to their references, and ``bound`` those of quantifiers to their names.
-    A node without a name in the text gets an IRI made of its path, as in a graph that is built from the text.
+    ``variables`` maps the available variables to their references. ``bound`` maps the variables of quantifiers to their
+    names. A node without a name in the text gets an IRI from its path, as in a graph that is built from the text.
     """
 
     names: Names
@@ -53,7 +53,7 @@ class ClauseText:
     bound: dict[str, str] = field(default_factory=dict[str, str])
 
     def body(self, clauses: Sequence[Clause], path: str = "") -> str:
-        """Return the text of the parts of a body. Raises ``Incomplete`` if there is no When, or a Given after all."""
+        """Return the text of a body. Raises ``Incomplete`` if it has no When, or a Given clause after the last one."""
         numbers = part_numbers(clauses)
         count = count_of_parts(clauses, numbers)
         if not count:
@@ -94,7 +94,7 @@ class ClauseText:
         return lines
 
     def events(self, events: Iterable[EventClause], path: str) -> list[str]:
-        """Return the text ``event <e> occurs`` for each event in a part of a When, which has the path ``path``."""
+        """Return the text ``event <e> occurs`` for each event in the part of a When that has the path ``path``."""
         lines: list[str] = []
         for index, clause in enumerate(events):
             self._named(clause.iri, "when-evt", f"{path}.{index}")
@@ -226,7 +226,7 @@ class ClauseText:
     def _bind(self, variable: Iri) -> str:
         """Declare the variable of a quantifier, so that clauses inside the quantifier can refer to it.
 
-        Several quantifiers may have one variable.
+        Several quantifiers may share a variable.
         """
         if variable in self.bound:
             return self.bound[variable]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
 
 OWL_INSTANT = "http://www.w3.org/2006/time#Instant"
-"""Type of events in some models."""
+"""Some models use this type for events."""
 
 
 _LARGER = (
@@ -33,7 +33,7 @@ _LARGER = (
     "rbw:DefinedEvent",
     "rbw:Requirement",
 )
-"""Types of nodes that are not written as events or tasks, even if they also have such a type, which is then lost."""
+"""Nodes of these types are not written as events or tasks. If they also have such a type, it is lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,7 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
 
 
 def _predicates(names: Names, left_out: dict[str, str]) -> Iterator[str]:
-    """Yield the declarations of the named predicates. All names are known first: they may refer to each other."""
+    """Yield the declarations of named predicates. All their names are declared first: they may refer to each other."""
     declared: list[Iri] = []
     for node in names.records.instances("rbw:NamedPredicate"):
         try:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def named_phrase(names: Names, predicate: Predicate, use: Iri, variable: Callable[[str], str]) -> str:
-    """Return the phrase of a named predicate with its values. ``use`` is the node that uses it."""
+    """Return the phrase of a named predicate with its values. ``use`` is the node that uses the predicate."""
     values = [
         variable(str(node)) if names.records.iris([node]) else names.value(node)
         for node in items_of(names.records, use, "rbw:argument-list")
@@ -24,7 +24,7 @@ def named_phrase(names: Names, predicate: Predicate, use: Iri, variable: Callabl
 
 
 def declare_predicate(names: Names, node: Iri) -> None:
-    """Declare the name of a named predicate, and those of its parameters. Raises ``Incomplete``."""
+    """Declare the name of a named predicate and the names of its parameters. Raises ``Incomplete``."""
     read_named(names.records, node)
     own = names.split(node)[1]
     words = names.records.text(node, "rbw:phrase").split()
@@ -38,7 +38,7 @@ def declare_predicate(names: Names, node: Iri) -> None:
 
 
 def predicate_text(names: Names, node: Iri, state: Callable[[Iri, dict[str, str]], str]) -> str:
-    """Return the declaration of a named predicate. ``state`` writes its definition, given its parameters.
+    """Return the declaration of a named predicate. ``state`` writes its definition with the given parameters.
 
     Raises ``Incomplete``.
     """
@@ -50,7 +50,7 @@ def predicate_text(names: Names, node: Iri, state: Callable[[Iri, dict[str, str]
 
 
 def _words(names: Names, node: str) -> str:
-    """Return the phrase of a predicate with its name in the text."""
+    """Return the phrase of a predicate, with the name that the predicate has in the text."""
     own = names.split(node)[1]
     words = names.records.text(node, "rbw:phrase").split()
     return " ".join(names.paths[node] if word == own else word for word in words)

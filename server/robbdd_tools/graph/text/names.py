@@ -20,9 +20,9 @@ _ENDING = re.compile(r"[^\W\d][\w\-]*\Z")
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
 _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 _VARIABLES = frozenset({"variable", "each"})
-"""Kinds that may share a node: the variable of a template, and that of a quantifier in another template."""
+"""Kinds that may share a node: variables of templates, and variables of quantifiers in other templates."""
 NO_NAMESPACE = "https://robbdd.org/imported/"
-"""Namespace of nodes without a name if no node of the graph has one."""
+"""Namespace for nodes without a writable name."""
 
 
 @dataclass(slots=True)

@@ -17,7 +17,7 @@ _NUMERIC = (expand("xsd:integer"), expand("xsd:double"), QUANTITY)
 
 
 def value_text(names: Names, value: Node) -> str | None:
-    """Return a value of a property; ``None`` if the language cannot write it."""
+    """Return a value of a property as text, or ``None`` if the language cannot write it."""
     kind = str(getattr(value, "datatype", None) or "")
     if names.records.iris([value]):
         return f"<{names.paths[str(value)]}>" if str(value) in names.paths else None
@@ -33,7 +33,7 @@ def value_text(names: Names, value: Node) -> str | None:
 
 
 def base_of(names: Names, node: str) -> str:
-    """Return the set from which conditions select the elements of a set; the set itself if there are none."""
+    """Return the set from which conditions select a set's elements; the set itself if it has no conditions."""
     return names.records.one(node, "rbw:subset-of") if names.records.is_a(node, SET_BY_PROPERTY) else node
 
 

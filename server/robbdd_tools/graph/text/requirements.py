@@ -19,7 +19,7 @@ def requirement_texts(names: Names) -> Iterator[str]:
 
 
 def verified(names: Names, node: str, lead: str) -> str:
-    """Return the requirements that a node verifies as text behind ``lead``; empty if there are none."""
+    """Return ``lead`` and the requirements that a node verifies as text; empty if there are none."""
     records = names.records
     known = [names.reference(one) for one in records.iris(records.all(node, VERIFIES)) if one in names.paths]
     return f"{lead} {', '.join(known)}" if known else ""

@@ -133,7 +133,7 @@ class SceneText:
         return f"{head} {braces(entries)}"
 
     def _details(self, set_: str, member: str, kind: str) -> str:
-        """Return what the graph states about an element, in braces; empty if it states nothing."""
+        """Return the statements of the graph about an element, in braces; empty if there are none."""
         stated = map(str, self.names.records.all(member, "rbw:correct-for")) if kind == "workspace" else ()
         fitting = sorted(node for node in stated if self._kind(node) == "object")
         correct = [f"correct for: {', '.join(map(self._entry, fitting))}"] if fitting else []
@@ -144,7 +144,7 @@ class SceneText:
         return self.kinds.get(base_of(self.names, node), self._elements.get(node))
 
     def _properties(self, set_: str, member: str) -> list[str]:
-        """Return the properties of an element that are in the namespace of its set."""
+        """Return the properties of an element in the namespace of its set."""
         records, namespace = self.names.records, self.names.split(set_)[0]
         found: list[str] = []
         for term in records.properties(member):

@@ -50,7 +50,7 @@ def add_behaviour_tree(frame: Frame, declared: tree.BehaviourTree) -> None:
 def _named(
     frame: Frame, declared: tree.BehaviourTree, node: URIRef
 ) -> Iterator[tuple[tree.TreeComposite | tree.TreeLeaf, URIRef]]:
-    """Yield the named parts, with their nodes."""
+    """Yield the named parts of a tree with their graph nodes."""
     for part in walk(declared):
         if isinstance(part, tree.TreeComposite | tree.TreeLeaf):
             own = frame.claimed(f"{declared.name.text}.{part.name.text}", part.name)

@@ -59,8 +59,8 @@ SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 def build_graph(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> BuiltGraph:
     """Return the graph of a file in a snapshot (empty if the file cannot be read).
 
-    A file with a graph format's extension is parsed as a graph. Of the imported files ``together``, all declarations
-    are included.
+    A file with a graph format's extension is parsed as a graph. All declarations of the imported files ``together`` are
+    included.
     """
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
@@ -108,8 +108,8 @@ def build_declarations(
 def _nodes_of(entries: Iterable[Reached]) -> Iterator[str]:
     """Yield the nodes that only one of these declarations describes, including the parts of a template.
 
-    Variables and behaviours are left out, because the templates of a namespace share them. An error in one template
-    does not concern them in another one.
+    Variables and behaviours are left out, because templates of a namespace share them. So an error in one template
+    does not affect them in another template.
     """
     declared: dict[str, list[Definition]] = {}
     for entry in entries:
@@ -131,7 +131,7 @@ def _start(definition: Definition) -> int:
 
 
 def _add_foundations(sink: Sink, reached: Sequence[Reached], imported: ImportedGraph) -> None:
-    """Write all declarations: first independent ones, then compositions, which may be nested, and then stories."""
+    """Write all declarations: first independent ones, then the contents of compositions, and then stories."""
     tasks: dict[URIRef, URIRef] = {}
     wholes = [tuple(parts) for _, parts in groupby(reached, key=_whole)]
     placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry, *_ in wholes]
@@ -157,7 +157,7 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached], imported: ImportedG
 
 
 def _whole(entry: Reached) -> Key:
-    """Return the key of a declaration, or that of the story of a part."""
+    """Return the key of a declaration. For a part of a story, return the key of the story."""
     return entry.key if entry.story is None else (entry.uri, entry.story.offset)
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Clash:
-    """Two declarations with the same IRI: the later one, which the graph leaves out, and the first one."""
+    """Two declarations with the same IRI: the later one, which is not in the graph, and the first one."""
 
     iri: str
     location: Location
@@ -30,7 +30,7 @@ class BuiltGraph:
 
     - ``names``: maps an IRI to its qualified name in the text, or to a CURIE if the graph was parsed.
     - ``clashes``: pairs of declarations with the same IRI.
-    - ``unreliable_declarations``: the extents of declarations that have an error or use a declaration that has one.
+    - ``unreliable_declarations``: the extents of declarations that have an error or use a declaration with an error.
     - ``doubtful_nodes``: the nodes of these declarations.
     - ``faults``: the reasons why a graph file could not be read.
     - ``is_read``: true for a graph file. Its findings have to name their node.

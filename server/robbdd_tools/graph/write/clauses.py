@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.write.property_sets import PropertySets
 
 MAX_NESTED = 100
-"""Maximum nesting of parentheses; deeper ones are left out to protect the stack."""
+"""Maximum nesting depth of parentheses. Deeper ones are left out to protect the stack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class ClauseWriter:
         return nodes
 
     def occurrences(self, events: Sequence[tree.Occurrence], path: str) -> list[Node]:
-        """Write the clauses ``event <e> occurs``. ``path`` is that of the part of the ``When``."""
+        """Write the clauses ``event <e> occurs``. ``path`` is the path of the part of the ``When``."""
         nodes: list[Node] = []
         for index, occurrence in enumerate(events):
             node = self._generated("when-evt", f"{path}.{index}")
@@ -160,7 +160,7 @@ class ClauseWriter:
     def _conditions(
         self, owner: URIRef, term: str, name: str, conditions: Sequence[tree.PhraseUse | tree.NamedUse]
     ) -> None:
-        """Write conditions as nodes of their owner. Further ones have the name of the first one and a number."""
+        """Write conditions as nodes of their owner. The first one is called ``name``; others also have a number."""
         for number, condition in enumerate(conditions):
             node = self._sink.iri(f"{self.namespace}{name}{f'.{number}' if number else ''}")
             if node is not None:
@@ -292,7 +292,7 @@ def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
 
 
 def add_horizon(frame: Frame, node: URIRef, seconds: tree.Number | tree.Ref | None) -> None:
-    """Add a number of seconds, or the variable that has one as its value, to a node."""
+    """Add a number of seconds to a node, or the variable whose value it is."""
     sink = frame.sink
     if isinstance(seconds, tree.Ref):
         sink.add(node, HORIZON_VARIABLE, frame.target(seconds), frame.at(seconds))

@@ -53,7 +53,7 @@ class Reached:
 
     @property
     def is_head(self) -> bool:
-        """Whether this is the part of a story before its scenarios."""
+        """Whether the part is the head of a story."""
         return self.story is not None and self.placed.offset == self.story.offset
 
     def holds(self, definition: Definition) -> bool:
@@ -69,7 +69,7 @@ class Reached:
 class Uses:
     """References between the declarations of a file and its imports (``closure``, the file first).
 
-    The declarations of the first file, and those of the files ``together``, are its own.
+    The declarations of the first file and of the files ``together`` count as its own.
     """
 
     def __init__(self, closure: Sequence[FileAnalysis], together: Collection[str] = ()) -> None:
@@ -88,12 +88,12 @@ class Uses:
     def __iter__(self) -> Iterator[Reached]:
         """Yield all declarations, imported files before the files that import them, each file in text order.
 
-        Of a story with scenarios, its parts are yielded.
+        For a story with scenarios, its parts are yielded.
         """
         return chain.from_iterable(chain.from_iterable(self._files.values()))
 
     def story(self, entry: Reached) -> tuple[Reached, ...]:
-        """Return the parts of the story of a part, the head first; nothing for a declaration."""
+        """Return all parts of the story to which a part belongs, the head first; empty for a whole declaration."""
         return () if entry.story is None else self._stories[entry.uri, entry.story.offset]
 
     def of(self, entry: Reached) -> list[Reached]:
@@ -126,7 +126,7 @@ class Uses:
     def has_error(self, entry: Reached) -> bool:
         """Return whether a declaration has an error or an unresolved reference.
 
-        The head of a story has one if any part of the story has one.
+        The head of a story has an error if any part of the story has one.
         """
         if entry.is_head and entry.story is not None:
             return self._has_error_in(entry, entry.story.span) or any(map(self.has_error, self.story(entry)[1:]))
@@ -142,7 +142,7 @@ class Uses:
 
 
 def _entries(file: FileAnalysis, placed: PlacedDeclaration, own: bool) -> tuple[Reached, ...]:
-    """Return the head and the scenarios of a story with scenarios, and any other declaration as it is."""
+    """Split a story with scenarios into its head and its scenarios. Any other declaration is a single entry."""
     uri = file.document.uri
     if not placed.declaration.parts or placed.declaration.tree is None:
         return (Reached(file, placed, own, (uri, placed.offset)),)
@@ -204,7 +204,7 @@ def _extent(entry: Reached) -> Span:
 
 
 def _covers_one(span: Span, starts: Sequence[int]) -> bool:
-    """Return whether one of some sorted offsets is in a span."""
+    """Return whether a span contains any of the sorted offsets."""
     first = bisect_left(starts, span.start)
     return first < len(starts) and starts[first] < span.end
 

@@ -1,4 +1,4 @@
-"""Digest of a graph."""
+"""Compute digests of graphs."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ def graph_digest(built: BuiltGraph) -> str:
 
 
 def joint_digest(digests: Iterable[str]) -> str:
-    """Return one digest for several, independent of their order."""
+    """Return one digest for several digests, independent of their order."""
     return hashlib.sha256("".join(sorted(digests)).encode()).hexdigest()

@@ -42,7 +42,7 @@ def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> N
 
 
 def add_python(frame: Frame, node: URIRef, source: tree.PythonAttribute) -> None:
-    """Add that a node is an attribute of a Python module."""
+    """State that a node is an attribute of a Python module."""
     frame.sink.add_types(node, ["py:ModuleAttribute"], frame.at(source))
     _say(frame, node, "py:module-name", source.module.text, source.module)
     _say(frame, node, "py:attribute-name", source.attribute.text, source.attribute)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
 
     Owners = list[tuple[Node, Node]]
-    """Each blank node after the named node to which it belongs."""
+    """Blank node → the named node to which it belongs."""
 
 
 def read_graph_file(document: Document, others: Sequence[Document] = ()) -> BuiltGraph:
@@ -54,7 +54,7 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
 def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
     """Return the names of nodes for findings, which are CURIEs.
 
-    A blank node has the name of the node to which it belongs. ``owners`` are those of the graph if they are known.
+    A blank node has the name of the node to which it belongs. ``owners`` are the owners in the graph, if known.
     """
     from rdflib import BNode, Graph, URIRef
 
@@ -75,7 +75,7 @@ def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
 
 
 def blank_owners(graph: Graph) -> Owners:
-    """Return each blank node with the named node that leads to it."""
+    """Return a map from each blank node to the named node that leads to it."""
     from rdflib import BNode
 
     inner: dict[Node, list[Node]] = {}
@@ -98,9 +98,9 @@ def blank_owners(graph: Graph) -> Owners:
 def graph_places(documents: Iterable[Document], graph: Graph, owners: Owners | None = None) -> SourceMap:
     """Return the positions of the nodes of a graph in its texts.
 
-    A blank node has the position of the node to which it belongs. A node in several texts has its position in the last
-    of them, because earlier texts import the one that describes the node. ``owners`` are those of the graph if they are
-    known.
+    A blank node has the position of the node to which it belongs. If several texts contain a node, the last one
+    determines its position, because earlier texts import the text that describes the node. ``owners`` are the owners in
+    the graph, if known.
     """
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
     places: dict[str, Location] = {}

@@ -87,7 +87,7 @@ def merge_imports(document: Document, others: Iterable[Document] = ()) -> Merged
 
 
 def imported_file(importer: str, name: str) -> Path | None:
-    """Return the file that an import names; ``None`` for an address that no file is near for."""
+    """Return the file that an import names; ``None`` for an address without a file in the importer's folder."""
     path, own = uri_to_path(name), uri_to_path(importer)
     if path is not None or own is None:
         return path

@@ -51,7 +51,7 @@ def _lookalikes(graph: Graph) -> dict[str, tuple[str, set[str]]]:
     for namespace, terms in used.items():
         fitting = {own: terms & names for own, names in _vocabulary().items()}
         own = max(fitting, key=lambda name: (len(fitting[name]), name))
-        # A single word, such as 'Object', may belong to any vocabulary.
+        # A single word, such as 'Object', may be a term of any vocabulary.
         if len(fitting[own]) > 1:
             found[namespace] = (own, fitting[own])
     return found

@@ -1,4 +1,4 @@
-"""Find declarations of the same node, and the name of each node in the text."""
+"""Find the declarations that describe the same node, and the name of each node in the text."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ SHARED = VARIABLES | {SymbolKind.BEHAVIOUR}
 class _Named:
     """A name of a node.
 
-    ``local`` is the end of the node's IRI. ``says`` is the content of a declaration that may share its node with
-    others.
+    ``local`` is the end of the node's IRI. ``says`` is the content of the declaration, if it may share its node with
+    other declarations.
     """
 
     symbol: Symbol
@@ -56,7 +56,7 @@ class Identities:
     """The nodes that some declarations name.
 
     - ``names``: maps the IRI of a node to its first qualified name.
-    - ``starts``: maps a declaration to the IRIs of the namespaces in which it names nodes; ``None`` is an unknown one.
+    - ``starts``: maps a declaration to the IRIs of the namespaces of its nodes; ``None`` for an unknown namespace.
     - ``shared``: the nodes that several declarations define equally.
     - ``contested``: the nodes that declarations define differently, or that only one of them can have.
 
@@ -70,7 +70,7 @@ class Identities:
 
 
 def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
-    """Return the nodes that some declarations name, and which of these are shared or contested."""
+    """Return the nodes that some declarations name, and classify nodes with several names as shared or contested."""
     names: dict[str, str] = {}
     first: dict[str, tuple[Reached, _Named]] = {}
     repeated: dict[str, list[Declarer]] = {}

@@ -19,12 +19,12 @@ CODE = "imported-statement"
 
 
 def imported_faults(snapshot: Snapshot, uri: str, imported: ImportedGraph, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield the findings on the graphs that a file imports. ``graph`` is that of the file with these statements."""
+    """Yield the findings on the graphs that a file imports. ``graph`` is the file's graph with these statements."""
     if not imported.documents:
         return
     yield from imported.faults
     for triple, place in imported.refused:
-        # A graph may repeat statements of the models, as one that was made from them does.
+        # A graph may repeat statements of the models, for example because it was made from them.
         if triple not in graph:
             subject, predicate, value = (imported.names.get(str(node), str(node)) for node in triple)
             is_type = predicate in ("rdf:type", "http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
@@ -35,7 +35,7 @@ def imported_faults(snapshot: Snapshot, uri: str, imported: ImportedGraph, graph
 
 
 def _undeclared(snapshot: Snapshot, uri: str, imported: ImportedGraph) -> Iterator[Diagnostic]:
-    """Yield a warning for each subject that is nearly the name of a declaration in a namespace of the models."""
+    """Yield a warning for each undeclared subject whose name is similar to a declared name in the same namespace."""
     declared: dict[str, set[str]] = {}
     known: set[str] = set()
     for file in snapshot.closure(uri):

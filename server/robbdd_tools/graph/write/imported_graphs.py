@@ -1,4 +1,4 @@
-"""Graphs that models import: statements about things that the models declare, from files in Turtle and JSON-LD.
+"""Read the graphs that models import. They state facts about declared elements, in Turtle or JSON-LD.
 
 Such a graph adds types and properties of the user's own vocabularies. The criteria themselves are written in the models
 only: a statement in the vocabulary of acceptance criteria is left out and reported.
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Triple = tuple[Node, Node, Node]
 Places = dict[tuple[str, ...], Location]
 CORRECT_FOR = "rbw:correct-for"
-"""The only property of the vocabulary that an imported graph may add."""
+"""The only property of our vocabulary that an imported graph may add."""
 _OWN = tuple(PREFIXES[name] for name in ("bdd", "time", "task", "bhv", "bt", "env", "agn", "obs", "exec", "py", "rbw"))
 _TYPE = expand("rdf:type")
 
@@ -50,7 +50,7 @@ class Statement:
 class ImportedGraph:
     """All graphs that a file imports, directly or not.
 
-    - ``triples``: what they add to the model.
+    - ``triples``: the statements that they add to the model.
     - ``refused``: the statements in the vocabulary of acceptance criteria, with their places.
     - ``names``: CURIEs of their nodes.
     - ``prefixes``: namespace → prefix.
@@ -123,7 +123,7 @@ def _on_import(line: Location, fault: Diagnostic) -> Diagnostic:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Read:
-    """One document: its graph with own labels of blank nodes, and the places of its nodes and statements."""
+    """One document: its graph, and the places of its nodes and statements."""
 
     graph: Graph
     places: Places
@@ -132,7 +132,7 @@ class _Read:
 
 
 def _documents(roots: Iterable[Document]) -> tuple[tuple[Document, ...], dict[str, list[Diagnostic]]]:
-    """Return documents with those that they import by ``owl:imports``, and the faults by the URI of the root."""
+    """Return the root documents and all documents that they import by ``owl:imports``, and the faults of each root."""
     found: dict[str, Document] = {}
     faults: dict[str, list[Diagnostic]] = {}
     waiting = [(root.uri, root) for root in roots]
@@ -167,7 +167,7 @@ def _read(document: Document) -> _Read:
 
 
 def _places(document: Document, graph: Graph) -> Places:
-    """Return the places of the nodes, properties and values of a graph, at least the place of their node."""
+    """Return the places of a graph's nodes, properties and values. If one is unknown, the place of the node is used."""
     owners = blank_owners(graph)
     nodes = graph_places([document], graph, owners)
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
@@ -215,7 +215,7 @@ def _merged(documents: Sequence[Document], faults: list[Diagnostic]) -> Imported
 
 
 def _is_refused(predicate: Node, value: Node) -> bool:
-    """Return whether only models may make a statement: one with a term of the acceptance criteria vocabulary."""
+    """Return whether a statement uses a term of the acceptance criteria, so that only models may make it."""
     term = str(value) if str(predicate) == _TYPE else str(predicate)
     return any(_is_in(term, namespace) for namespace in _OWN) and term != expand(CORRECT_FOR)
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.write.sink import Frame
 
 Placed = list[tuple["tree.ChunkTree | None", "Frame"]]
-"""Trees of declarations, each with the frame for its triples."""
+"""Syntax trees of declarations, each with the frame for its triples."""
 
 
 def add_instances(placed: Placed) -> None:
@@ -137,7 +137,7 @@ class _InstanceWriter:
     def _element(self, instance: URIRef, modelled: tree.Modelled) -> None:
         """Write the models of an element or of each element of a set.
 
-        Sets inside a set are written after it, so that their models replace those of the set.
+        Sets inside a set are written after it, so that their models replace the models of the outer set.
         """
         sink, place = self._sink, self._frame.at(modelled.reference)
         target = self._frame.target(modelled.reference)
@@ -193,7 +193,7 @@ class _InstanceWriter:
         return node
 
     def _arm(self, node: URIRef, model: tree.Model) -> None:
-        """Write the data on an arm that replace those in its file."""
+        """Write the data about an arm that replace the data in its file."""
         sink, frame, gripper = self._sink, self._frame, model.gripper
         if model.tool is not None:
             sink.add(node, "rbw:tool", sink.literal(model.tool.value), frame.at(model.tool))

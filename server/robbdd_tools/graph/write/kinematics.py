@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Owner = tree.KinematicTree | tree.Graph
 MAX_STEPS = 50
-"""Maximum number of trees through which a name is resolved: trees that contain one another must not loop for ever."""
+"""Maximum number of trees through which a name is resolved, because trees may contain one another."""
 
 
 @dataclass(slots=True)

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Slot
 
 MAX_NESTED = 100
-"""Maximum nesting of parentheses; deeper ones are left out to protect the stack."""
+"""Maximum nesting depth of parentheses. Deeper ones are left out to protect the stack."""
 
 
 def add_predicate(frame: Frame, node: URIRef, predicate: tree.PhraseUse | tree.NamedUse, named: tree.Node) -> None:
-    """Add the terms of a predicate to the node of a clause or condition. ``named`` is the place of its class."""
+    """Add a predicate to the node of a clause or condition. ``named`` is the place to record for the node's class."""
     if isinstance(predicate, tree.PhraseUse):
         word = load_catalog().predicates[predicate.word]
         frame.sink.add_types(node, [word.rdf_type], frame.at(named))
@@ -42,7 +42,7 @@ def add_predicate(frame: Frame, node: URIRef, predicate: tree.PhraseUse | tree.N
 
 
 def add_arguments(frame: Frame, node: URIRef, slots: Iterable[Slot], phrase: tree.PhraseUse) -> None:
-    """Add what fills the slots of a phrase of the catalog."""
+    """Add the terms that fill the slots of a catalog phrase."""
     written = dict(phrase.arguments)
     for slot in slots:
         argument = written.get(slot.name)

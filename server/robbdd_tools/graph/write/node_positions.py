@@ -23,7 +23,7 @@ _ID_KEYS = {"@id", "id"}
 
 
 def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> dict[str, Span]:
-    """Return a position for each IRI: the first one as the subject of a statement, or else its first occurrence."""
+    """Return a position for each IRI: its first place as the subject of a statement, or else its first occurrence."""
     subjects: dict[str, Span] = {}
     others: dict[str, Span] = {}
     before = "."
@@ -45,7 +45,7 @@ def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> d
 
 @dataclass(slots=True)
 class _Statements:
-    """The statement that is read at one level of nesting: its subject, its predicate and what follows."""
+    """The current statement at one level of nesting: its subject, its predicate and the kind of the next node."""
 
     subject: str | None = None
     predicate: str | None = None
@@ -55,7 +55,8 @@ class _Statements:
 def turtle_statements(text: str, namespaces: Mapping[str, str], base: str) -> dict[tuple[str, ...], Span]:
     """Return the position of each property of a named subject, and of each of its values that are IRIs.
 
-    The keys are subject and predicate, and subject, predicate and value. Statements about blank nodes have none.
+    A key is (subject, predicate) for a property, and (subject, predicate, value) for a value. Statements about blank
+    nodes are left out.
     """
     found: dict[tuple[str, ...], Span] = {}
     levels = [_Statements()]
@@ -81,7 +82,7 @@ def turtle_statements(text: str, namespaces: Mapping[str, str], base: str) -> di
 
 
 _DIRECTIVES = {"@prefix": 3, "@base": 2, "prefix": 2, "base": 1}
-"""Directive → the number of tokens that follow it, including the point at its end."""
+"""Directive → the number of tokens after it, including the dot at its end."""
 _UNLIKE_NAMES = re.compile(
     r"""("{3}(?:\\.|[^\\])*?"{3}|'{3}(?:\\.|[^\\])*?'{3}|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|<[^<>\s]*>|\#[^\n\r]*)
     |(?<![\w:\-%.])(?:_:(?P<blank>[\w\-]+)|[-+]?(?:\d+\.\d+|\.\d+|\d+)(?:[eE][-+]?\d+)?)""",
@@ -90,7 +91,7 @@ _UNLIKE_NAMES = re.compile(
 
 
 def _simplified(text: str) -> str:
-    """Return a text of the same length without numbers, whose points end no statement, and with IRIs as blank nodes."""
+    """Replace numbers by spaces, because their dots end no statement, and blank nodes by IRIs of the same length."""
 
     def simplify(match: re.Match[str]) -> str:
         if match[1]:

@@ -1,4 +1,4 @@
-"""Clauses of older published models, which name their predicate and time as nodes of their own (holds, holds-at)."""
+"""Convert clauses of older published models. Their predicate and time are separate nodes (holds, holds-at)."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _EVENTS = {
 
 
 def complete_clauses(graph: Graph) -> None:
-    """State on each clause what its predicate and time constraint state on nodes of their own; nothing is removed.
+    """Copy the statements about the separate nodes of a clause's predicate and time constraint to the clause itself.
 
-    ``time:ref-event`` becomes the property that the constraint's type asks for.
+    Nothing is removed. ``time:ref-event`` is copied to the property that the type of the constraint requires.
     """
     from rdflib import RDF, URIRef
 

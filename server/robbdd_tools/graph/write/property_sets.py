@@ -37,7 +37,7 @@ class PropertySets:
         self._written: set[URIRef] = set()
 
     def members(self, frame: Frame, link: tree.Link) -> tuple[URIRef, ...] | None:
-        """Return the elements of a set, or those that conditions select from it; ``None`` if they are unknown."""
+        """Return the elements of a set, or those that conditions select from the set; ``None`` if they are unknown."""
         base = frame.target(link.reference)
         conditions = () if link.where is None else conditions_of(frame.placed, link.where)
         elements = None if base is None else self._known_sets().get(base)
@@ -47,7 +47,7 @@ class PropertySets:
         return tuple(one for one in elements if str(one) in selected)
 
     def target(self, frame: Frame, ref: tree.Ref, where: tree.Where | None) -> URIRef | None:
-        """Return the node of a set, or of the elements that conditions select from it; ``None`` if it is unknown."""
+        """Return the node of a set, or the node of the elements that conditions select from it; ``None`` if unknown."""
         base = frame.target(ref)
         if base is None or where is None:
             return base

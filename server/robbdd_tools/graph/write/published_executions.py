@@ -1,4 +1,4 @@
-"""Executions in the published vocabulary: ROS actions and topics, and scene instances with model files."""
+"""Convert executions in the published vocabulary: ROS actions and topics, and scene instances with model files."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _ROS = (
     ("ros:Action", "bdd:BehaviourImplementation", "rbw:RosAction"),
     ("ros:Topic", "obs:ObservationPolicy", "rbw:TrinaryTopic"),
 )
-"""A published class, another class of the node, and the class of ours that states both."""
+"""A published class, another class of the same node, and our class that means both."""
 _FORMATS = {"mujoco": "mjcf", "urdf": "urdf", "usd": "usd"}
-"""Word in the IRI of a model's published class → its format."""
+"""Word in the IRI of a model's published class → the model's format."""
 
 
 def complete_executions(graph: Graph) -> None:
-    """State in our terms what a graph states in published terms about executions; nothing is removed.
+    """Add statements in our terms that mean the same as a graph's published statements about executions.
 
-    The published form does not name the scene instance of an execution. If exactly one instantiates the scene of the
-    executed variant's template, it is this one.
+    Nothing is removed. The published form does not name the scene instance of an execution. If exactly one scene
+    instance instantiates the scene of the executed variant's template, this one is used.
     """
     for ros, kind, own in _ROS:
         for node in set(_instances(graph, ros)) & set(_instances(graph, kind)):
@@ -59,7 +59,7 @@ def _complete_instance(graph: Graph, node: Node) -> None:
     graph.add((node, _term("rdf:type"), _term("rbw:SceneInstance")))
     head = Collection(graph, BNode(), models).uri if models else _term("rdf:nil")
     graph.add((node, _term("rbw:models"), head))
-    # The templates' scenes are among the values; only the scene of the language has members of its own.
+    # The scenes of templates are also among the values, but only scenes of the language have their own members.
     templates = set(graph.objects(None, _term("bdd:has-scene")))
     for scene in _values(graph, node, "bdd:of-scene"):
         if scene not in templates:

@@ -1,4 +1,4 @@
-"""Write requirements, and the links from what verifies them, as triples."""
+"""Write requirements, and the links to them from the elements that verify them, as triples."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_requirement(frame: Frame, requirement: tree.Requirement) -> None:
-    """Add a requirement with its text, its identifier elsewhere and its source."""
+    """Add a requirement with its text, its identifier in other tools and its source."""
     node = frame.claimed(requirement.name.text, requirement.name)
     if node is None:
         return

@@ -10,11 +10,11 @@ from robbdd_tools.syntax import tree
 
 Quaternion = tuple[float, float, float, float]
 _SAME = 1e-4
-"""Tolerance of the dot products of direction cosines, compared with orthogonal unit vectors."""
+"""Maximum deviation of the dot products of direction cosines from those of orthogonal unit vectors."""
 
 
 def rotation_of(value: tree.Vector | tree.EulerAngles | tree.Axes) -> Quaternion | None:
-    """Return the rotation that a value describes, or ``None`` for numbers that are not a rotation.
+    """Return the rotation that a value describes, or ``None`` if its numbers are not a rotation.
 
     Quaternions are normalised. Euler angles are intrinsic unless stated otherwise; angles without a unit are in rad.
     """

@@ -24,7 +24,7 @@ OUTCOMES = {"holds": "earl:passed", "violated": "earl:failed", "unknown": "earl:
 """Verdict → EARL's outcome value."""
 Json = Mapping[str, Any]
 _NO_IRI = frozenset('<>" {}|\\^`')
-"""Characters that no IRI has: a text with one of them is a literal."""
+"""Characters that an IRI cannot contain. A text with one of them is a literal."""
 
 
 class BadResults(Exception):
@@ -89,7 +89,7 @@ class _Writer:
         self.graph.add((node, URIRef(expand(term)), value))
 
     def say(self, node: URIRef, term: str, value: str | float | bool) -> None:
-        """Add a literal; floats as xsd:double."""
+        """Add a literal. A float becomes an xsd:double."""
         from rdflib import Literal, URIRef
 
         double = URIRef(expand("xsd:double"))
@@ -117,7 +117,7 @@ class _Writer:
             self._clause(node, f"{node}/clause/{place}", _object(clause, f"clause {place} of {where}"), entry)
 
     def _shared(self, run: URIRef, scenario: URIRef, entry: Json, where: str) -> None:
-        """Add the behaviour-tree execution from which a scenario was judged; other scenarios may share it."""
+        """Add the behaviour-tree execution by which a scenario was judged. Other scenarios may share it."""
         from urllib.parse import quote
 
         name = _field(entry, "execution", str, where)

@@ -81,7 +81,7 @@ class Scenes:
 class Memberships:
     """Assigns nodes for the membership of elements in a scene.
 
-    Such a node has its published IRI, or another one if that already has other members.
+    Such a node has its published IRI or, if the node of this IRI already has other members, another IRI.
     """
 
     sink: Sink
@@ -141,7 +141,7 @@ def _add_fitting_objects(frame: Frame, selected: PropertySets, workspace: URIRef
 
 
 def _add_properties(frame: Frame, namespace: str, element: URIRef, properties: Iterable[tree.Property]) -> None:
-    """Add what is known about an element as properties of the namespace of its set."""
+    """Add the declared properties of an element, in the namespace of its set."""
     for stated in properties:
         term = frame.sink.iri(namespace + stated.name.text)
         for written in stated.values if term is not None else ():

@@ -172,7 +172,7 @@ class Frame:
         return None if definition is None else self.sink.iri(definition.iri)
 
     def claimed(self, path: str, name: Name) -> URIRef | None:
-        """Return the graph node of a name that must be unique, or ``None`` if another declaration has reserved it."""
+        """Return the graph node of a name that must be unique; ``None`` if another declaration has reserved it."""
         definition = self._definitions.get(path)
         location = self.at(name)
         if definition is None or definition.span != location.span:

@@ -36,7 +36,7 @@ class SourceMap:
         return next(iter(self.places.get((node, expand(term)), ())), None)
 
     def value(self, node: str, term: str, value: str) -> tuple[Location, ...]:
-        """Return every position of a value of a property of a node."""
+        """Return all positions of one value of a node's property."""
         return self.places.get((node, expand(term), value), ())
 
 

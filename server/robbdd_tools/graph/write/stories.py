@@ -71,7 +71,7 @@ def add_story(sink: Sink, known: Known, parts: Sequence[Reached], position: int)
 
 
 def _variants(frame: Frame, story: tree.Story, parts: Sequence[Reached]) -> Iterator[tuple[Frame, tree.Variant]]:
-    """Yield the scenarios of a story, or those among some parts of it, with their places."""
+    """Yield the scenarios in some parts of a story, or in the whole story, each with its frame."""
     if parts[0].story is None:
         yield from ((frame, variant) for variant in story.variants)
     for part in parts:
@@ -113,9 +113,9 @@ def _add_membership(frame: Frame, known: Known, variant: tree.Variant, node: URI
 
 
 def _add_loose_members(sink: Sink, scene: URIRef, kind: str, members: tuple[URIRef, ...]) -> None:
-    """Add the elements in a variation as members of a scene that has no members of their kind.
+    """Add the elements in a variation as members of the scene, if the scene has no members of their kind.
 
-    The published form is used.
+    They are added in the published form.
     """
     _, term, ending = MEMBERSHIPS[kind]
     node = sink.iri(scene + ending)
