@@ -1,4 +1,4 @@
-"""Read regular files, up to a size limit. All other modules read through these functions.
+"""Read regular files up to a size limit. All other modules read files by the functions of this module.
 
 Each file is checked before it is opened and again afterwards, and is opened without blocking. So a named pipe, a device
 or a link to one can neither block the process nor fill its memory: its reader gets the reason of the refusal.
@@ -118,7 +118,7 @@ def load_text(path: Path, limit: Limit = MODEL_SIZE) -> str:
 def load_bytes(path: Path, limit: Limit = MODEL_SIZE) -> bytes:
     """Return the content of a file; raises ``UnreadableFile``.
 
-    At most one byte more than the limit is read, whatever size the file claims to have.
+    At most one byte more than the limit is read, even if the file claims another size.
     """
     largest = limit.value()
     try:

@@ -97,7 +97,7 @@ class _Defaults:
                 own[element.tag] = {**own.get(element.tag, {}), **element.attributes}
 
     def values(self, element: Element, childclass: str) -> Mapping[str, str]:
-        """Return the attributes of an element with those of its class."""
+        """Return the attributes of an element, including the attributes that its class provides."""
         name = element.attributes.get("class") or childclass or MAIN
         return {**self._values.get(name, {}).get(element.tag, {}), **element.attributes}
 

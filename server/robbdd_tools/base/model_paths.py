@@ -33,7 +33,7 @@ def packages() -> list[str]:
 def mesh_places(path: Path, name: str) -> Iterator[Path]:
     """Yield possible places of a file that a URDF file names.
 
-    They are relative to the file, in ROS packages, or in a folder above the file.
+    The places are relative to the file, in ROS packages, or in a folder above the file.
     """
     scheme = next((scheme for scheme in SCHEMES if name.startswith(scheme)), "")
     if not scheme:

@@ -185,7 +185,7 @@ def limit_memory(largest: int) -> None:
 
 
 def limit_processor_time(seconds: int) -> None:
-    """End this process after ``seconds`` of processor time, whatever it executes. Windows has no such limit."""
+    """End this process after ``seconds`` of processor time, even in the middle of work. Windows has no such limit."""
     if sys.platform != "win32":
         import resource
 

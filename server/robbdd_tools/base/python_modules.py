@@ -97,7 +97,7 @@ def attribute_place(module: str, attribute: str, folder: Path) -> PythonPlace | 
 
 
 def modules_in(package: str, folder: Path) -> list[str]:
-    """Return the modules next to the models of a folder and on ``PYTHONPATH``, or those of a package, sorted."""
+    """Return the sorted modules of a package or, without one, those next to a folder's models and on ``PYTHONPATH``."""
     if package:
         spec = find_module(package, folder)
         places = [] if spec is None else list(spec.submodule_search_locations or ())

@@ -30,7 +30,7 @@ def foreign_variable(site: Site) -> Iterator[Diagnostic]:
 
 
 def _variables(scenario: Scenario) -> Iterator[tree.Ref]:
-    """Yield the references to variables in a scenario; those in the variation are first."""
+    """Yield the references to variables in a scenario, first the references in its variation."""
     yield from (column.ref for column in scenario.columns)
     yield from (use.ref for use in scenario.clauses.uses if use.bound is None)
     yield from (bound.in_set for bound in scenario.clauses.bounds)

@@ -41,7 +41,7 @@ def hidden_variable(site: Site) -> Iterator[Diagnostic]:
 def _hiding(
     site: Site, node: tree.Node, declared: Mapping[str, tree.Name], bound: Mapping[str, tree.Name]
 ) -> Iterator[Diagnostic]:
-    """Report the quantifiers in a node. ``declared`` are the template's variables, ``bound`` those of outer ones."""
+    """Report the quantifiers in a node. ``declared`` are the template's variables, ``bound`` the outer ones."""
     if isinstance(node, _Quantifier):
         name = node.variable.text
         hidden = bound.get(name) or declared.get(name)

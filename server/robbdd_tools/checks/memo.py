@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
-"""Declarations that pass their dependencies on: what refers to them also depends on what they refer to."""
+"""Declarations that pass on dependencies: a reference to one is also a dependency on its own references."""
 _FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
 """The kinds of the names of ``_TRANSPARENT`` declarations."""
 

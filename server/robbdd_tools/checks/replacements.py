@@ -88,7 +88,7 @@ def _fixed_words(phrase: str) -> list[list[str]]:
 
 
 def _is_longer(one: list[list[str]], other: list[list[str]]) -> bool:
-    """Return whether two phrases have the same slots, and the words of each begin with those of the other."""
+    """Return whether two phrases have the same slots and differ only in words added before a slot or at the end."""
     return len(one) == len(other) and all(
         own[: len(their)] == their[: len(own)] and bool(own) == bool(their)
         for own, their in zip(one, other, strict=True)

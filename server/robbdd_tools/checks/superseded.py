@@ -35,7 +35,7 @@ SUPERSEDED = {
 
 
 def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the shape findings without those at places where a rule already reports the same mistake.
+    """Remove the shape findings at places where a rule already reports the same mistake.
 
     All other findings stay, so no mistake is lost where shapes and rules differ.
     """

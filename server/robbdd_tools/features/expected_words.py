@@ -1,4 +1,4 @@
-"""Determine what the grammar accepts at a cursor, and the keyword sequences that may be written there."""
+"""Determine the tokens and the keyword sequences that the grammar accepts at a cursor."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Place:
 
     - ``before``: the text that was parsed. Lines that cannot be parsed are blanked, and clauses joined by 'and' or 'or'
       or negated by 'not' have their parentheses.
-    - ``expected``: what the grammar accepts after it; ``None`` if the text could not be parsed.
+    - ``expected``: the tokens that the grammar accepts after it; ``None`` if the text could not be parsed.
     - ``opened``: the places of the missing parentheses that are still open at the end of the text, as distances from
       this end.
     """
@@ -40,7 +40,7 @@ class Place:
 
 
 def place_after(language: str, before: str) -> Place:
-    """Return what the grammar accepts after a text."""
+    """Return the place at the end of a text, with the tokens that the grammar accepts there."""
     opened: list[int] = []
     for _ in range(MAX_BROKEN_LINES):
         parsed = parse_chunk(language, before)

@@ -53,7 +53,7 @@ def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | 
 def _in_broken_text(snapshot: Snapshot, analysis: FileAnalysis, offset: int) -> tuple[Span, Definition] | None:
     """Look up the text of a name.
 
-    This is used in a broken declaration, and for a name of which a part is unresolved.
+    This is used in a broken declaration, and for a name with an unresolved part.
     """
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None or cursor.placed is None:

@@ -104,7 +104,7 @@ class Names:
                 yield from self.proposals(inside.rules, bracket="<")
 
     def facts(self) -> ValueFacts:
-        """Return what is known about the value at the cursor."""
+        """Return the known facts about the value at the cursor."""
         uri, before = self.file.document.uri, without_number(self.cursor.before)
         variable = variable_of_value(self.snapshot, uri, before)
         if variable is None:

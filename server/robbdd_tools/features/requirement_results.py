@@ -131,7 +131,7 @@ def _outcome(scenario: JudgedScenario, verifier: Verifier) -> str:
 
 
 def requirement_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> Iterator[Diagnostic]:
-    """Report the requirements of a file of which the latest runs did not show that they are satisfied."""
+    """Report each requirement of a file that the latest runs did not show to be satisfied."""
     for one in coverage_of_file(snapshot, uri, findings) if findings.variants else ():
         name, place = one.requirement.symbol.path, one.requirement.span
         failing = [entry for entry in one.evidence if entry.outcome and entry.outcome != "holds" and not entry.stale]

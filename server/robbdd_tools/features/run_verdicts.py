@@ -250,7 +250,7 @@ def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) 
 class Digests:
     """Digests of the text that runs judge.
 
-    The digests of clauses and variants are stored by IRI, those of table rows by variant and number. ``executions`` are
+    Digests of clauses and variants are stored by IRI, digests of table rows by variant and number. ``executions`` are
     the digests of the executions that the file itself declares, by IRI.
     """
 

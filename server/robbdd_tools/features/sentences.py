@@ -89,7 +89,7 @@ def _seconds(horizon: tree.Number | tree.Ref) -> str:
 
 
 def condition_meaning(conditions: Sequence[tree.PhraseUse | tree.NamedUse]) -> str:
-    """Describe which samples of a window a clause with these conditions concerns."""
+    """Describe the samples of a window at which a clause with these conditions is judged."""
     return (
         f"Judged only at the samples at which this holds: {_joined(conditions)}. The margin is that of the "
         "predicate at these samples. If there are none, the clause holds and is marked as vacuous."

@@ -84,7 +84,7 @@ def _origins(
 ) -> Iterator[Span]:
     """Yield the places where a file names the code.
 
-    These are the ``bhv:`` of executions or, without one, the declaration of the name.
+    The places are the ``bhv:`` of executions or, if there is none, the declaration of the name.
     """
     origin = error.fault.origin
     named = False

@@ -135,7 +135,7 @@ def feature_pieces(
 def feature_file_name(model: AcceptanceModel, story: Story) -> str:
     """Return the name of a story's feature file. It is valid on every file system.
 
-    The name is that of the story. Stories with the same name in several namespaces are numbered.
+    The file has the name of the story. Stories with the same name in several namespaces are numbered.
     """
     name = _file_stem(model, story.iri)
     same = [other.iri for other in model.stories if _file_stem(model, other.iri).casefold() == name.casefold()]
@@ -262,7 +262,7 @@ class _VariantWriter:
 def _in_order(variant: Variant) -> tuple[Clause, ...]:
     """Return the clauses of a variant in the order of their roles: given, when, then.
 
-    Within a role, the clauses of the template are before those of the variant. If the template has several parts, its
+    Within a role, clauses of the template are before clauses of the variant. If the template has several parts, its
     clauses keep their order: the Given clauses of the variant are before them, and its other clauses after the last
     When.
     """

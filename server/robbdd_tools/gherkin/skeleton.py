@@ -63,7 +63,7 @@ class Pattern:
 
 
 def patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct sentences of a model: first those of the scene, then those of the clauses in order."""
+    """Return the distinct sentences of a model, first from the scene and then from the clauses in order."""
     found: dict[Pattern, None] = {}
     writer = StepWriter(model, load_catalog())
     for story in model.stories:

@@ -71,7 +71,7 @@ def value_of(node: Node) -> PropertyValue | None:
 
 
 def facts(snapshot: Snapshot, uri: str) -> Iterator[Fact]:
-    """Yield the properties of the elements that a file can use: first declared ones, then those of imported graphs."""
+    """Yield the properties of the elements that a file can use: first declared ones, then ones from imported graphs."""
     closure = snapshot.closure(uri)
     for file in closure:
         for placed in file.declarations:

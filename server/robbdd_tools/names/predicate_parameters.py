@@ -39,7 +39,7 @@ def predicate_of(site: Site, use: tree.NamedUse) -> tuple[Site, tree.NamedPredic
 
 
 def predicate_at(site: Site, definition: Definition) -> tree.NamedPredicate | None:
-    """Return the named predicate that declares a name. The name is its own or that of one of its parameters."""
+    """Return the named predicate that declares a name. The name is its own or the name of a parameter."""
     found = site_of(site.snapshot, definition)
     return found.tree if found is not None and isinstance(found.tree, tree.NamedPredicate) else None
 

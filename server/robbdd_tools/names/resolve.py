@@ -203,7 +203,7 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
 
 
 def candidates(reference: Reference) -> tuple[str, ...]:
-    """Return the qualified names that a reference may denote, those of the innermost scope first."""
+    """Return the qualified names that a reference may denote, first names in the innermost scope."""
     path = reference.ref.path
     return (*[f"{scope}.{path}" for scope in reference.scopes], path)
 

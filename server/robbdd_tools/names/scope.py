@@ -75,7 +75,7 @@ class Scope:
         return self._reachability.unread(self.own.document.uri)
 
     def reaches(self, uri: str) -> bool:
-        """Return whether a file is among those of the scope, read or not."""
+        """Return whether the scope contains a file, even one that could not be read."""
         return self._reachability.reaches(self.own.document.uri, uri)
 
     @property

@@ -40,7 +40,7 @@ class PlacedVariant:
 
 
 def variants_of(snapshot: Snapshot, uri: str, within: Span | None = None) -> Iterator[PlacedVariant]:
-    """Yield the variants of a file that have an IRI, or those of them that touch a span, in text order."""
+    """Yield the variants of a file that have an IRI, in text order. If a span is given, they must touch it."""
     file = snapshot.file(uri)
     if file is None:
         return

@@ -93,7 +93,7 @@ def rules_of(language: str, construct: Construct) -> list[str]:
 
 @cache
 def read_rules(language: str) -> Mapping[str, grammar.Expression]:
-    """Return the rules of a kind of file, including the shared rules and those of the catalog's phrases."""
+    """Return the rules of a kind of file, including shared rules and the rules of catalog phrases."""
     return grammar.read_grammar(grammar_text(language))
 
 

@@ -1,4 +1,4 @@
-"""Recognise common mistakes of newcomers. For these, the intended text helps more than a list of expected words."""
+"""Recognise common mistakes of newcomers, for whom the intended text is more helpful than the expected words."""
 
 from __future__ import annotations
 

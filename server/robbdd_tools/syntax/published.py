@@ -1,4 +1,4 @@
-"""Fill in what templates and variants in the published form omit: clause names, behaviour names and durations.
+"""Add clause names, behaviour names and durations that templates and variants in the published form omit.
 
 A clause is named after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI and
 can be referred to. Names in the text are not generated again. A behaviour starts at the event of *before* in ``Given``

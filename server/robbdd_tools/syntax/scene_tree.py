@@ -1,4 +1,4 @@
-"""Syntax trees shared by every file kind, and those of scenes: one frozen class per grammar rule.
+"""Syntax trees of scenes, and syntax trees that all file kinds share: one frozen class per grammar rule.
 
 Spans count from the start of the chunk, so a tree stays valid when its text moves.
 """
@@ -61,8 +61,7 @@ class Number(Node):
 
 @dataclass(frozen=True, slots=True)
 class Ref(Node):
-    """A reference. ``role`` is the grammar rule without ``Ref`` (``Event``, ``AnySet`` …); ``span`` is that of the
-    path."""
+    """A reference. ``role`` is its grammar rule without ``Ref`` (``Event``, ``AnySet`` …). ``span`` covers the path."""
 
     role: str
     path: str

@@ -52,7 +52,7 @@ class _Generated(Exception):
 
 
 def sound_names(language: str, text: str) -> tuple[str, ...] | None:
-    """Return the words of the names in a chunk: first the name of its declaration, then those of its parts.
+    """Return the words of the names in a chunk: first the name of its declaration, then the names of its parts.
 
     Returns ``None`` if the chunk may have a syntax error, or names that its text does not contain. A few words that
     declare nothing may be among the others.

@@ -44,7 +44,7 @@ _TOP: dict[type[tree.Node], SymbolKind] = {
 
 
 def symbols(root: tree.DeclarationTree) -> tuple[Symbol, ...]:
-    """Return the names that a declaration declares: first its own name, then those of its parts in text order."""
+    """Return the names that a declaration declares: first its own name, then the names of its parts in text order."""
     if isinstance(root, tree.Import):
         return ()
     if isinstance(root, tree.Namespace):

@@ -1,4 +1,4 @@
-"""All syntax trees under one name: the shared ones and those of each file kind."""
+"""All classes of syntax trees in one module: the shared ones and the ones of each file kind."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def context_for(prefixes: Mapping[str, str]) -> Json:
-    """Return the context of RobBDD with all prefixes of a graph. A prefix replaces a term with its name."""
+    """Return the context of RobBDD with all prefixes of a graph. A prefix replaces a term of the same name."""
     names = {namespace: prefix for prefix, namespace in prefixes.items()}
     renamed = {name: names[namespace] for name, namespace in PREFIXES.items()}
     terms = {

@@ -1,7 +1,7 @@
-"""The vocabulary of the graph, with published namespaces and those of RobBDD.
+"""The vocabulary of the graph, with the published namespaces and the namespaces of RobBDD.
 
-Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``catalog/term_prefixes``, whatever prefixes the
-user's file has.
+Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``catalog/term_prefixes``, even if the user's file
+has other prefixes.
 """
 
 from __future__ import annotations

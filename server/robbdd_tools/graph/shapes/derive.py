@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def derive(graph: Graph, records: Records | None = None) -> Derived:
     """Return a copy of a graph with all derived statements that the shapes need.
 
-    ``records`` are those of the graph if they are known.
+    ``records`` are the records of the graph, if known.
     """
     from rdflib import Graph
 

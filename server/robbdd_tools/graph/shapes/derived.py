@@ -60,6 +60,6 @@ class Derived:
     def anchor(self, node: Node | str, value: str, *keys: Key) -> None:
         """Record the source-map keys of a derived value of a node.
 
-        If the value is ``""``, the keys are those of a derived node itself.
+        If the value is ``""``, the keys belong to the derived node itself.
         """
         self.anchors.setdefault((str(node), value), []).extend(keys)

@@ -1,4 +1,4 @@
-"""The built-in shapes: those in files, and those generated from the words of the catalog."""
+"""Load the built-in shapes from files, and generate shapes from the words of the catalog."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ class Neighbourhoods:
     def _add_compositions(self) -> None:
         """Record that a composition depends on the compositions of the workspaces in it.
 
-        This is so even if the composition does not name these compositions.
+        The composition need not name these compositions.
         """
         compositions = [entry for entry in self.reached if isinstance(entry.tree, tree.Composition)]
         describing: dict[str, list[Reached]] = {}

@@ -1,1 +1,1 @@
-"""Write RDF as RobBDD text, and report what the text cannot express."""
+"""Write RDF as RobBDD text, and report statements that the text cannot express."""

@@ -1,4 +1,4 @@
-"""Compare a graph with the graph of the text made from it, triple by triple. Labels of blank nodes do not matter."""
+"""Compare a graph, triple by triple, with the graph of its text. Labels of blank nodes do not matter."""
 
 from __future__ import annotations
 

@@ -268,7 +268,7 @@ def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
 
 
 def _add_imported(sink: Sink, imported: ImportedGraph, prefixes: dict[str, str]) -> None:
-    """Add the statements of imported graphs. Their prefixes come after those of the models."""
+    """Add the statements of imported graphs. Their prefixes are added after the prefixes of the models."""
     declared = frozenset(str(node) for node in sink.graph.subjects())
     for triple in imported.triples:
         sink.graph.add(triple)
