@@ -15,7 +15,8 @@ Value = TypeVar("Value")
 YOUNG, OLDER, OLD = 100_000, 50, 100
 """Thresholds of ``gc.set_threshold``.
 
-The youngest generation is searched after ``YOUNG`` new objects, each older one after so many searches of the younger.
+The youngest generation is searched after ``YOUNG`` new objects, the middle one after ``OLDER`` searches of the
+youngest, and the oldest one after ``OLD`` searches of the middle one.
 """
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import monotonic, sleep
 
 PATIENCE = 2.0
-"""On Windows, a rename is retried for so many seconds: virus scanners, indexers and editors briefly open new files."""
+"""On Windows, a rename is retried for this time (s): virus scanners, indexers and editors briefly open new files."""
 PAUSE = 0.02
 """Seconds between two attempts."""
 

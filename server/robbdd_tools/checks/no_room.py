@@ -36,7 +36,7 @@ def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
             yield from _containers(scene)
-    # Only with so many agents in its scope can a file have such a scenario. In a large scope, they are not counted.
+    # Such a scenario needs more than SIDES agents in the scope of the file. In a large scope, they are not counted.
     scope = snapshot.scope(file.document.uri)
     if not scope.is_small or sum(len(one.names.of_kind.get(SymbolKind.AGENT, ())) for one in scope.nearest) > SIDES:
         for site in story_sites(snapshot, file):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.gherkin.where import Condition
 
 MAX_COMBINATIONS = 100_000
-"""Maximum number of combinations to cover in a product. Covering so many takes some minutes."""
+"""Maximum number of combinations to cover in a product. Covering this many takes some minutes."""
 
 Row = tuple[int, ...]
 """One scenario, as the index of the value of each variable."""

@@ -20,7 +20,7 @@ class Wanted:
     """A user's selection. ``where`` filters the scenarios, and at most one other criterion reduces them further.
 
     - ``first`` and ``sample``: the number of scenarios to select from the whole model, the first ones or random ones.
-    - ``strength``: each variant's covering array contains all combinations of values of so many variables.
+    - ``strength``: each variant's covering array contains all combinations of values of this many variables.
     - ``seed``: determines the sample.
     """
 

@@ -153,7 +153,7 @@ class Occurrence(Node):
 
 @dataclass(frozen=True, slots=True)
 class Emission(Node):
-    """``emits <moment> as <event>``: maps the behaviour's own event (``moment``, as ``pick-end``) to a model event."""
+    """``emits <moment> as <event>``: maps the behaviour's own event (``moment``: ``pick-end``) to a model event."""
 
     moment: Name
     event: Ref

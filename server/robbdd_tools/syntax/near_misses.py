@@ -131,5 +131,5 @@ def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) ->
 
 
 def _may_be_anything(rejected: Rejected) -> bool:
-    """Return whether so many texts are allowed at a place that the intended text is uncertain."""
+    """Return whether a place allows too many texts to be certain of the intended one."""
     return len(rejected.expected.literals - {"pred", "the", "every"}) > 2

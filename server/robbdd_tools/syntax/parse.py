@@ -15,7 +15,7 @@ from robbdd_tools.syntax.story_cut import cut_story, quotes_cuts
 from robbdd_tools.syntax.symbols import references, symbols
 
 CACHED_LETTERS = 100_000
-"""Unused declarations of so many characters stay cached. A declaration takes about 100 bytes per character."""
+"""Unused declarations stay cached up to this number of characters in total, each of which takes about 100 bytes."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
 

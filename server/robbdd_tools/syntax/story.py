@@ -26,7 +26,7 @@ from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
 CACHED_FRAMES = 100
 CACHED_LETTERS = 30_000
-"""Scenarios of so many characters stay cached, in addition to those of the story that was parsed last."""
+"""Scenarios stay cached up to this total number of characters, in addition to the story that was parsed last."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _WORD = "Scenario"
 _NAMELESS = re.compile(rf"{_WORD}\s*{{")
