@@ -1,4 +1,4 @@
-"""Move one arm of a simulation and its gripper; what the arm does last is kept from one behaviour to the next."""
+"""Move one arm of a simulation and its gripper. Each behaviour continues from the arm's last command."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 SLIPPED = 3
-"""Ticks in a row without grip that count as a loss."""
+"""The gripper has lost the object after this many ticks in a row without grip."""
 DIP = 0.05
-"""How far (m) the tool may sink below both ends of a path on which the joints move evenly."""
+"""While the joints move evenly, the tool may sink this far (m) below both ends of its path."""
 LONG = 10.0
-"""Duration (s) of a motion from which on an even motion of the joints is considered: it should take half as long."""
+"""If a motion takes longer (s), an even motion of the joints replaces it if that takes at most half as long."""
 TRIED = 40
-"""Number of postures of such a path that are checked for collisions."""
+"""About this many postures of an even motion are checked for collisions."""
 ARRIVED = 1e-3
-"""Difference (m, rad) up to which an arm is at its parking pose."""
+"""An arm is at its parking pose if the tool pose differs from it by at most this much (m, rad)."""
 
 
 class ArmControl:
@@ -37,7 +37,7 @@ class ArmControl:
 
     - ``joints``: the joint positions (rad) that the servos follow.
     - ``control``: the value of the gripper's actuator.
-    - ``held``: the element that the gripper holds; the loss of it ends a motion.
+    - ``held``: the element that the gripper holds; a motion ends when the gripper loses it.
     """
 
     def __init__(self, simulation: Simulation, agent: str) -> None:
@@ -61,7 +61,7 @@ class ArmControl:
         return present_pose(self.arm, self.joints)
 
     def senses_object(self, name: str) -> bool:
-        """Whether the gripping faces hold an object."""
+        """Return whether the gripping faces hold an object."""
         return self.simulation.holds(self.robot.name, name)
 
     def at_travel(self, pose: ToolPose) -> ToolPose:
@@ -76,10 +76,10 @@ class ArmControl:
         yield from self._follow(lambda limit: plan(self.arm, self.joints, goal, self._limits, limit), speed, until)
 
     def move_above(self, above: ToolPose, at: ToolPose) -> Step:
-        """Move the tool to a pose above another one, to which it can then descend. Raises the same.
+        """Move the tool to the pose ``above``, from which it can descend to ``at``. Raises like ``move``.
 
-        Where the straight path exceeds the joint limits, or takes long as the posture changes unevenly along it, the
-        joints move evenly to another posture if nothing is in the way. Arms with published results keep to their paths.
+        If the straight path exceeds the joint limits, or takes long because the posture changes unevenly along it, the
+        joints move evenly to another posture, if nothing is in the way. Arms with published results keep their paths.
         """
 
         def planned(limit: float) -> Motion:
@@ -87,7 +87,7 @@ class ArmControl:
                 motion = plan(self.arm, self.joints, above, self._limits, limit)
                 if self.arm.is_published:
                     return motion
-                # A posture from which it cannot descend is of no use.
+                # Raises if the tool cannot descend from the last posture.
                 self.arm.solve(motion.joints[-1], *frame_of(at))
                 other = self._change_posture(above, at, limit) if len(motion.joints) * TICK > LONG else None
                 return motion if other is None or len(other.joints) > len(motion.joints) / 2 else other
@@ -102,7 +102,7 @@ class ArmControl:
         yield from self._follow(planned, None, None)
 
     def _change_posture(self, above: ToolPose, at: ToolPose, limit: float) -> Motion | None:
-        """Return a free motion to the nearest posture at a pose from which the tool can descend."""
+        """Return a collision-free motion to the nearest posture from which the tool can descend, if there is one."""
         clearance = Clearance(self.simulation, self.robot, self.held or "", self.simulation.data, control=self.control)
         lowest = min(self.tool.height, above.height) - DIP
         found = list(self.arm.solutions(*frame_of(above)))
@@ -118,7 +118,7 @@ class ArmControl:
         return None
 
     def move_through(self, poses: Sequence[ToolPose], speed: float, until: Callable[[], bool] | None = None) -> Step:
-        """Move the tool through some poses without a stop. Raises the same."""
+        """Move the tool through some poses without a stop. Raises like ``move``."""
         yield from self._follow(
             lambda limit: plan_through(self.arm, self.joints, poses, self._limits, limit), speed, until
         )
@@ -160,7 +160,7 @@ class ArmControl:
             return
 
     def park(self) -> Step:
-        """Move the tool out of the way of the other arms; without a path, stay."""
+        """Move the tool out of the way of the other arms. The arm stays if it finds no path."""
         # A controller without planning may have moved the arm.
         self.joints = self.simulation.targets(self.robot)
         place = parking_pose(self.simulation, self.robot)

@@ -19,27 +19,27 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel
 
 CLOSE = 5e-5
-"""Remaining pose error (m and rad) at which a solution is accepted."""
+"""A solution is accepted if its pose error is below this (m and rad)."""
 VISIBLE = 1e-3
-"""Distance (m) from the goal from which on it is the reason why a pose is out of reach, not the orientation."""
+"""If the tool misses its goal by at least this distance (m), an error names the distance, else the orientation."""
 ROUNDS = 60
 MIN_DAMPING, DAMPING = 1e-6, 0.01
 """Damping of the least squares: a minimum, and a share of the squared pose error.
 
-It fades near the goal, because damping lets the pull towards the posture leak into the pose.
+Damping fades near the goal, because with it the pull towards the home posture changes the tool pose.
 """
 POSTURE = 0.2
 """Share of the way back to the home posture that a redundant arm moves in each iteration."""
 ARMS = 16
 """Size of the cache of arms; every configured robot is a separate entry."""
 TURNS = 2 * np.pi
-"""Limit (rad) of joints that turn without limits: cables of real ones do not allow more either."""
+"""Limit (rad) of joints without limits in their file: the cables of real arms do not allow more either."""
 VERTICAL, AHEAD = 0.999, 0.05
-"""Cosine of the largest angle of a vertical axis; largest bearing (rad) of a tool that is straight ahead."""
+"""An axis is vertical from this cosine of its tilt on; a tool is straight ahead up to this bearing (rad)."""
 STRIDE = 0.3
 """Largest change of a joint in one iteration, rad."""
 SEEDS = 12
-"""Random postures from which a second search starts; they are the same in every run."""
+"""Number of random postures from which more searches start; they are the same in every run."""
 
 
 class Unreachable(BehaviourError):
@@ -56,7 +56,7 @@ class Arm:
 
     ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the preferred posture, all in rad. ``limited`` says
     which joints have limits, ``turning`` which ones are not sliding. ``is_published`` marks upright arms of the
-    catalog: their motions are part of published results, so that they take no other way where theirs ends.
+    catalog: their motions are part of published results, so they take no other path if their own one fails.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -106,7 +106,7 @@ class Arm:
         return bearing if abs(bearing) > AHEAD else 0.0, 1.0 if vertical > 0 else -1.0
 
     def _turned(self, direction: float) -> float:
-        """Return the change of the first joint that turns the home posture to a direction (rad)."""
+        """Return the change (rad) of the first joint that turns the home posture to a direction (rad)."""
         assert self._turns_with is not None
         bearing, sense = self._turns_with
         turn = direction - bearing
@@ -124,7 +124,7 @@ class Arm:
         """Yield joint positions (n,) that put the tool at a pose; raises ``Unreachable`` if there are none.
 
         The first search starts at the home posture, turned towards the goal. Unless the arm's results are published,
-        others start at random postures: its home may be a posture from which a joint limit is in the way.
+        other searches start at random postures, because a joint limit may be in the way from home.
         """
         missed: Unreachable | None = None
         found = 0
@@ -172,7 +172,7 @@ class Arm:
         raise Unreachable(_largest(gap[:3]), _largest(gap[3:]))
 
     def _turn_left(self, turn: FloatArray) -> None:
-        """Write the rotation vector (3,) rad, world frame, from the tool's current orientation to the goal's."""
+        """Write the rotation vector (rad, world frame) from the tool's orientation to the goal's into ``turn`` (3,)."""
         goal, present = self._turns
         mujoco.mju_mat2Quat(present, self._rotation)
         mujoco.mju_subQuat(turn, goal, present)

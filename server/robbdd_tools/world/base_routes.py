@@ -16,21 +16,21 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 CELL = 0.10
-"""Distance between the places that a search considers, m."""
+"""Distance (m) between neighbouring places of a search."""
 HEADINGS = 8
-"""Number of headings at each of them."""
+"""Number of headings at each place of a search."""
 STEP, TURN_STEP = 0.05, 0.2
 """Distance (m) and angle (rad) between the poses of a route that are checked for collisions."""
 TURN_COST, BACK_COST = 0.3, 1.5
-"""Cost of a turn per rad, in m; factor of the cost of driving backwards."""
+"""A turn costs this much (m) per rad; driving backwards costs this many times as much as driving forwards."""
 MOST = 8000
-"""Number of poses whose neighbours are examined before a search is given up."""
+"""A search gives up after it has examined the neighbours of this many poses."""
 SAME = 1e-9
 Node = tuple[int, int, int]
-"""Numbers of a place's column and row, and of a heading."""
+"""The numbers of the column, the row and the heading of a pose in a search."""
 
 Route = list["FloatArray"]
-"""Poses (x m, y m, yaw rad): from each to the next one, the base turns on the spot or drives straight."""
+"""Poses (x m, y m, yaw rad). From each pose to the next, the base turns on the spot or drives straight."""
 
 
 def angle(value: float) -> float:
@@ -39,7 +39,7 @@ def angle(value: float) -> float:
 
 
 def cost(route: Route) -> float:
-    """Return the length of a route in m, with its turns and with its ways backwards at their costs."""
+    """Return the length of a route in m, plus the costs of turns and of driving backwards."""
     total = 0.0
     for one, other in pairwise(route):
         length = hypot(other[0] - one[0], other[1] - one[1])
@@ -58,7 +58,7 @@ class RouteSearch:
         self._low, self._high = low, high
 
     def direct(self, start: FloatArray, goal: FloatArray) -> Route | None:
-        """Return the route with one straight line, forwards or backwards, ``None`` if it is not free."""
+        """Return the route with one straight line, forwards or backwards; ``None`` if it is not free."""
         length = hypot(goal[0] - start[0], goal[1] - start[1])
         if length < SAME:
             return self._checked([start, goal])
@@ -67,7 +67,7 @@ class RouteSearch:
         return min((route for route in found if route is not None), key=cost, default=None)
 
     def around(self, start: FloatArray, goal: FloatArray) -> Route | None:
-        """Return a short route around obstacles, ``None`` if the search finds none."""
+        """Return a short route around obstacles; ``None`` if the search finds none."""
         direct = self.direct(start, goal)
         if direct is not None:
             return direct
@@ -75,7 +75,7 @@ class RouteSearch:
         return None if found is None else self._shortened(found)
 
     def _checked(self, route: Route) -> Route | None:
-        """Return a route if all poses on it are free. The first one is where the base is."""
+        """Return a route if all poses on it are free, except the first: it is where the base is now."""
         return route if all(self._is_free(pose) for pose in _poses_on(route)) else None
 
     def _search(self, start: FloatArray, goal: FloatArray) -> Route | None:

@@ -1,4 +1,4 @@
-"""Where a mobile base has room: collision checks of the whole robot with its base in other places."""
+"""Find where a mobile base has room: check the whole robot for collisions with its base at other places."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 SCAN = 0.20
-"""Height (m) above the floor up to which a loose thing has to reach to be seen: that of the plane of usual scanners."""
+"""A loose thing is seen if it reaches this height (m) above the floor: usual scanners look in this plane."""
 GROUND = 0.02
-"""Height (m) above the lowest point of a base up to which it touches the floor or what is let into it."""
+"""Contacts below this height (m) above the base's lowest point are ignored: they are with the floor or things in it."""
 
 
 class BaseSpace:
     """Collision checks of a robot in its present posture, with the object in its gripper, for other poses of its base.
 
-    Everything is where it is seen at construction. Loose things that are lower than ``SCAN`` are not seen.
+    Everything is where the robot saw it at construction. Loose things that are lower than ``SCAN`` are not seen.
     """
 
     def __init__(self, simulation: Simulation, robot: Robot, held: str | None, room: float) -> None:
@@ -45,7 +45,7 @@ class BaseSpace:
         self._floor = float(lows[self._moving & (self._model.geom_contype > 0)].min()) + GROUND
         self._unseen = np.array([owner in self._low_things(simulation, lows) for owner in self._owners])
         self.touched: dict[str, None] = {}
-        """The owners of the things that were in the way so far."""
+        """Names of the elements that have been in the way so far."""
 
     @property
     def start(self) -> FloatArray:
@@ -61,7 +61,7 @@ class BaseSpace:
         return (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
 
     def is_free(self, pose: FloatArray) -> bool:
-        """Return whether a robot touches nothing with its base at a pose (x m, y m, yaw rad)."""
+        """Return whether the robot touches nothing when its base is at a pose (x m, y m, yaw rad)."""
         self._place(pose)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
@@ -77,7 +77,7 @@ class BaseSpace:
         return False
 
     def _place(self, pose: FloatArray) -> None:
-        """Put the base, and the object in its gripper, at a pose of the base."""
+        """Move the base to a pose, and the object in the gripper with it."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._mobile.joints] = self._mobile.positions_at(pose)
         if self._held is not None:

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Vector
 
 STIFFNESS = 5000.0
-"""Gain of a belt's speed servo, N s/m: an object that is held back does not slow the belt."""
+"""Gain of a belt's speed servo, N s/m: so high that an object that is held back does not slow the belt."""
 
 
 def add_belt(spec: Any, body: Any, name: str, surface: Vector) -> Any:
-    """Add a part to a body that runs at the velocity ``surface`` (m/s, in the body's frame) when driven; return it."""
+    """Add a belt to a body and return it; when driven, it runs at the velocity ``surface`` (m/s, body's frame)."""
     speed = float(np.linalg.norm(surface))
     part = body.add_body(name=name)
     part.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[along / speed for along in surface])
@@ -62,5 +62,5 @@ class Belts:
         data.qvel[self._rates] = self._speeds
 
     def set_back(self, data: Any) -> None:
-        """Reset their positions, not their speeds."""
+        """Reset the positions of the belts, not their speeds."""
         data.qpos[self._places] = 0.0

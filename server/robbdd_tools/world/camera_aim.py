@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 ROOM = 1.06
-"""Room around the scene in the picture, as a multiple of what it needs."""
+"""The picture shows this many times the extent of the scene, so that there is room around it."""
 ROUNDS = 6
-"""Corrections of the aim; each one reduces the rest to a small part."""
+"""Number of corrections of the aim; each one leaves only a small part of the error."""
 CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 """The corners (8, 3) of a box whose half edges are 1."""
 
 
 def corners_of(model: Any, data: Any) -> FloatArray:
-    """Return the corners (n, 3), m, of the boxes around all shapes but the floor, in the world frame."""
+    """Return the corners (n, 3), m, world frame, of the boxes around all shapes except the floor."""
     shapes = np.flatnonzero(model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
     middles, halves = model.geom_aabb[shapes, :3], model.geom_aabb[shapes, 3:]
     local = middles[:, None, :] + halves[:, None, :] * CORNERS
@@ -30,7 +30,7 @@ def corners_of(model: Any, data: Any) -> FloatArray:
 
 
 def aim(points: FloatArray, azimuth: float, elevation: float, field: float, aspect: float) -> tuple[FloatArray, float]:
-    """Return the point (3,) that a camera looks at, m, and its distance from it, m, so that all points are in view.
+    """Return the point (3,) m at which a camera must look to see all points, and the camera's distance (m) from it.
 
     Args:
         points: (n, 3), m, in the world frame.

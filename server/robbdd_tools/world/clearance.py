@@ -36,7 +36,7 @@ class Clearance:
         shape: int | None = None,
         control: float | None = None,
     ) -> None:
-        """Ignore contacts with the object ``spare``, if any, or with one of its shapes: it is to be gripped.
+        """Ignore contacts with the object ``spare``, if any, or with one of its shapes: the arm is going to grip it.
 
         The gripper is open, or at the value ``control`` of its actuator.
         """

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 THINGS = 1
 """Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
 COLUMN = "robbdd-column"
-"""Name of the pedestal's body, among those of the robot's file."""
+"""Name of the body of the pedestal, which is added to the bodies of the robot's file."""
 TORSION, ROLLING = 0.005, 0.0005
 """Torsional and rolling friction of objects, m; without rolling friction, a ball never comes to rest."""
 
@@ -186,11 +186,11 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
 
 
 def _use_solid(spec: Any, geom: Any, shape: Shape, solid: Solid) -> None:
-    """Let a solid of a file take the place of its bounding box."""
+    """Replace a shape's bounding box by the solid from the file."""
     geom.type = ENGINE[solid.kind]
     geom.condim = 4 if solid.kind in (SolidKind.BOX, SolidKind.MESH) else 6
     if solid.kind is SolidKind.MESH:
-        # The mass is the object's; a flat mesh has no volume of its own.
+        # The object gives the mass, as a flat mesh has no volume.
         points = [coordinate for vertex in solid.vertices for coordinate in vertex]
         spec.add_mesh(name=f"{geom.name}/hull", uservert=points, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
         geom.meshname = f"{geom.name}/hull"
@@ -225,14 +225,14 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     driven = robot.joints if mobile is None else (*robot.joints, *mobile.joints)
     for servo in child.actuators:
         if servo.target in driven:
-            # Its control input is the speed of the target: a target that jumps with every tick would shake the arm.
+            # The control input is the speed of the target: a target that jumps with every tick would shake the arm.
             servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
             servo.ctrllimited = False
     turn = rotation_of(base.yaw, robot.tilt)
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
     _attach(spec, child, f"{name}/", frame)
     pairs = apart
-    # What an arm hangs on is part of the scene.
+    # The thing that carries an arm is part of the scene.
     if mobile is None and robot.tilt == UPRIGHT:
         _add_column(spec, name, base, THINGS | robots)
         pairs = [*apart, *((COLUMN, body) for body in beside_base)]
@@ -251,13 +251,13 @@ def _add_column(spec: Any, name: str, base: Pose, touches: int) -> None:
 
 
 def _pull_from(spec: Any, pads: list[str], distance: float) -> None:
-    """Let a vacuum pull from a distance (m): the engine's adhesion acts on contacts in a gap, which exert no force."""
+    """Let a vacuum pull from a distance (m): in this gap, the engine's contacts exert no force but adhesion."""
     for pad in pads if distance else ():
         spec.geom(pad).gap = distance
 
 
 def _attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:
-    """Add a model. The world keeps its own options and sizes where those of the model's file differ."""
+    """Add a model. Where options and sizes of the model's file differ, the world keeps its own."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Attach conflict")
         spec.attach(child, prefix=prefix, frame=frame)

@@ -1,4 +1,4 @@
-"""Read the configuration of a scene back from the world built from it."""
+"""Read the configuration of a scene back from its world."""
 
 from __future__ import annotations
 

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 UPHOLDING = 0.5
-"""Minimum cosine between a contact's normal and the vertical for the lower body to support the upper one."""
+"""A body supports the one above it if the cosine of the contact normal's angle to the vertical is at least this."""
 Pair = tuple[str, str]
 
 
 class ContactForces:
-    """Forces between each agent, with all that it grips, and everything else.
+    """Forces between everything else and each agent together with the objects that it grips.
 
-    Per sample, agent and other: the largest force (N) and the impulse (N s) since the previous sample. Others are
-    objects and agents (also the agent itself) by name, and anything else by the name of its body or geom. A gripped
-    object counts with the force beyond its own weight: a part that still stands on a table exerts nothing. Forces are
-    measured in every step. Only the steady force between an agent and its gripped object is measured once per sample,
-    except for the objects ``in_every_step``.
+    A sample has, for each agent and each thing that it touches, the largest force (N) and the impulse (N s) since the
+    previous sample. Objects and agents (also the agent itself) are given by name, anything else by the name of its body
+    or geom. A gripped object counts with the force beyond its own weight: a part that still stands on a table exerts
+    nothing. Forces are measured in every step. Only the steady force between an agent and its gripped object is
+    measured once per sample, except for the objects ``in_every_step``.
     """
 
     def __init__(self, model: Any, agents: Iterable[str], things: Iterable[str], in_every_step: Iterable[str]) -> None:
@@ -94,7 +94,7 @@ class ContactForces:
         return self._row
 
     def touched_since(self, row: int, agent: str) -> tuple[str, ...]:
-        """Return what an agent has touched from a sample on, by name."""
+        """Return the names of the things that an agent has touched since a sample."""
         pairs = ((other, rows) for (one, other), rows in self._peaks.items() if one == agent)
         return tuple(sorted(other for other, rows in pairs if any(one >= row for one in rows)))
 
@@ -109,8 +109,8 @@ class ContactForces:
     def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
         """Return the contacts so far, earliest first; ``times`` (n,) are those of the samples, s.
 
-        Left out are contacts with an object that the agent grips at some time, and with the support of this object
-        while it is picked up or put down, unless the force exceeds the limit of *does not collide*.
+        Contacts with an object that the agent grips at some time are left out. So are contacts with the support of this
+        object while it is picked up or put down, unless the force exceeds the limit of *does not collide*.
         """
         found = [
             Contact(*key, float(times[total.first]), total.peak, float(times[total.highest]), total.impulse)
@@ -122,7 +122,7 @@ class ContactForces:
         return tuple(sorted(found, key=lambda one: (one.time, one.agent, one.part, one.other)))
 
     def _hold(self, gripped: frozenset[Pair]) -> None:
-        """Record who grips what, and for each geom its agent and whether it belongs to a gripped object."""
+        """Record which agent grips which objects, and for each geom its agent and whether it is of a gripped object."""
         self._gripped = gripped
         self._holders = {agent: agent for agent in self._agents} | {thing: agent for agent, thing in gripped}
         self._holder_of = [self._holders.get(owner, "") for owner in self._owners]
@@ -139,7 +139,7 @@ class ContactForces:
         self._measure(data, counted, TICK)
 
     def _measure(self, data: Any, counted: list[tuple[int, int, int]], duration: float) -> None:
-        """Add the forces of contacts (number, geoms) that last for some time (s)."""
+        """Add the forces of the contacts ``counted`` (number, two geoms), which last for ``duration`` (s)."""
         forces: defaultdict[tuple[str, str, str], list[float]] = defaultdict(lambda: [0.0, 0.0])
         for contact, *geoms in counted:
             size, lift = self._force(data, contact)
@@ -170,7 +170,7 @@ class ContactForces:
             impulses[self._row] = impulses.get(self._row, 0.0) + force * duration
 
     def _force(self, data: Any, contact: int) -> tuple[float, float]:
-        """Return the magnitude of a contact's force (N) and its component upwards on the second geom."""
+        """Return the magnitude (N) of a contact's force, and its upward component (N) on the second geom."""
         mujoco.mj_contactForce(self._model, data, contact, self._wrench)
         x, y, z, *_ = self._wrench.tolist()
         if not (x or y or z):
@@ -179,7 +179,7 @@ class ContactForces:
         return hypot(x, y, z), x * upwards[0] + y * upwards[1] + z * upwards[2]
 
     def _note_supports(self, data: Any, thing: str) -> None:
-        """Record what supports an object from below, by contact directions: a grip may carry all of the weight."""
+        """Record the supports of an object by contact directions, not by forces: a grip may carry all of the weight."""
         pairs: list[list[int]] = data.contact.geom.tolist()
         for geoms, upwards in zip(pairs, data.contact.frame[:, 2].tolist(), strict=True):
             first, second = (self._owners[geom] for geom in geoms)
@@ -189,7 +189,7 @@ class ContactForces:
 
 @dataclass(slots=True)
 class _Sum:
-    """Totals of one contact: rows of its first sample and of its largest force, that force (N), impulse (N s)."""
+    """Totals of one contact: row of its first sample, row of its largest force, this force (N), the impulse (N s)."""
 
     first: int
     highest: int

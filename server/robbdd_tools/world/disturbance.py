@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.robot import Robot
 
 FAULTS = 2
-"""Separates the random stream of faults from those of the scene and of places, which start from the same seed."""
+"""Number of the random stream of faults: the streams of the scene and of places start from the same seed."""
 
 
 class Disturbance:
@@ -47,7 +47,7 @@ class Disturbance:
         return self._fault.size if self._fault.name in ("slow-arm", "fast-arm") else 1.0
 
     def seen(self, position: FloatArray) -> FloatArray:
-        """Return the position (3,) m at which something is seen."""
+        """Return the position (3,) m at which the robots see something."""
         match self._fault.name:
             case "offset-pose":
                 return position + self._beside
@@ -57,7 +57,7 @@ class Disturbance:
                 return position
 
     def seen_place(self, position: FloatArray) -> FloatArray:
-        """Return the position (3,) m at which something is seen that carries a goal."""
+        """Return the position (3,) m at which the robots see something that carries a goal."""
         raised = 1e-3 * self._fault.size if self._fault.name == "high-release" else 0.0
         return self.seen(position) + np.array([0.0, 0.0, raised])
 
@@ -86,7 +86,7 @@ class Disturbance:
                 return joints, control
 
     def end_tick(self, command: Callable[[Robot, FloatArray, float], None]) -> None:
-        """Repeat the last command of each arm whose behaviour has ended while commands still wait."""
+        """Repeat the last command of each arm that has ended its behaviour but still has delayed commands."""
         for name, arm in self._arms.items():
             if arm.commanded is None and arm.last_command is not None and arm.waiting:
                 command(self._robots[name], *arm.last_command)
@@ -97,7 +97,7 @@ class Disturbance:
         return max(1, round(self._fault.size / TICK))
 
     def _with_backlash(self, arm: _Arm, joints: FloatArray) -> FloatArray:
-        """Let the first joint follow its target only as far as the play of its gears is exceeded."""
+        """Move the first joint only as far as its target is beyond the play of the gears."""
         half = np.deg2rad(self._fault.size) / 2.0
         last = joints if arm.last is None else arm.last
         arm.last = joints.copy()
@@ -108,8 +108,8 @@ class Disturbance:
 class _Arm:
     """State of one robot with a fault.
 
-    ``tightest`` is the gripper's tightest control value since it holds something; ``opening`` counts the ticks since it
-    began to open again. ``waiting`` are commands that are carried out later, ``commanded`` is the command of this tick.
+    ``tightest`` is the gripper's tightest control value since it has held something; ``opening`` counts the ticks since
+    it began to open again. ``waiting`` are delayed commands, ``commanded`` is the command of this tick.
     """
 
     def __init__(self) -> None:
@@ -130,7 +130,7 @@ class _Arm:
             self.tightest = control
 
     def delayed(self, joints: FloatArray, ticks: int) -> FloatArray:
-        """Return the targets (rad) of some ticks ago. A delay that ends is made up for while the arm waits."""
+        """Return the targets (rad) of ``ticks`` ago. When a delay ends, the arm catches up while it waits."""
         self.waiting.append(joints)
         first = self.waiting[0]
         if len(self.waiting) > ticks:

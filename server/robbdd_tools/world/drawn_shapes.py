@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.judge import Regions
 
 SHOWN = 3
-"""Geoms in groups below this one are drawn, as by the engine; higher groups are collision shapes."""
+"""Geoms in groups below this one are drawn, as the engine does; others are collision shapes."""
 FACES = 3000
-"""Maximum triangles of a mesh; finer meshes are decimated."""
+"""Maximum number of triangles of a mesh; finer meshes are decimated."""
 GRIDS = (96, 64, 48, 32, 24, 16, 8, 4)
-"""Cells along the longest side of a mesh; vertices in one cell are merged."""
+"""Numbers of cells along the longest side of a mesh, tried in this order; vertices in one cell are merged."""
 DIGITS = 5
-"""Decimals of lengths and rotations: hundredths of a millimetre."""
+"""Number of decimals of lengths and rotations: hundredths of a millimetre."""
 UNPAINTED = (0.5, 0.5, 0.5, 1.0)
 """The engine's default colour, which a material's colour replaces."""
 KINDS = {

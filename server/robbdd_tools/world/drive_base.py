@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 ACCELERATION, ANGULAR = 0.8, 2.0
 """Largest accelerations of a base, m/s² and rad/s²."""
 ROOM = (0.05, 0.02, 0.0)
-"""Distances (m) that the robot keeps from everything: the largest one that leaves a way."""
+"""The robot keeps the first of these distances (m) from everything that leaves it a route."""
 MARGIN = 1.0
-"""Room (m) around the scene in which routes are searched."""
+"""Routes are also searched this far (m) around the scene."""
 BEHIND, TWISTED = 0.05, 0.1
-"""How far (m, rad) a base may be from where it should be on its route: beyond it, something blocks the base."""
+"""A base is blocked if it is farther (m, rad) than this from its planned pose on the route."""
 ARRIVED, AIMED = 0.02, 0.03
-"""Deviation (m, rad) from the goal at which a base has arrived."""
+"""A base has arrived if it deviates from its goal by at most this much (m, rad)."""
 SETTLING = 0.3
-"""Time (s) after which the base stands still at its goal."""
+"""At its goal, the base settles for this time (s) before its pose is checked."""
 LOST = 3
-"""Ticks in a row without grip that count as a loss."""
+"""The gripper has lost the object after this many ticks in a row without grip."""
 
 
 class DriveBase:
@@ -50,7 +50,7 @@ class DriveBase:
         self._missing = 0
 
     def move_to(self, workspaces: Sequence[str]) -> Step:
-        """Drive to where the arm reaches one of some workspaces; raises ``BehaviourError``.
+        """Drive to a place from which the arm reaches one of the workspaces; raises ``BehaviourError``.
 
         The arm first takes its home posture, with the object in its gripper. The route is planned once.
         """
@@ -64,7 +64,7 @@ class DriveBase:
         for one, other in pairwise(route):
             way = np.array([other[0] - one[0], other[1] - one[1], angle(float(other[2] - one[2]))])
             yield from self._leg(pose, way, since)
-            # The angle goes on beyond half a turn, as that of the joint does.
+            # The angle may exceed half a turn, as the joint's angle does.
             pose = pose + way
         yield from hand.wait(round(SETTLING / TICK))
         self._check(pose, ARRIVED, AIMED, since)
@@ -132,7 +132,7 @@ class DriveBase:
             raise BehaviourError(f"gripper lost {hand.held} at {hand.time:.2f} s")
 
     def _check(self, pose: FloatArray, distance: float, turn: float, since: int) -> None:
-        """Raise ``BehaviourError`` if the base is not near a pose (m, rad); it then stays where it is."""
+        """Stop the base and raise ``BehaviourError`` if it is farther (m, rad) from a pose than given."""
         gap = pose - self._here
         if hypot(gap[0], gap[1]) > distance or abs(gap[2]) > turn:
             self._simulation.drive(self._robot, self._here)

@@ -1,4 +1,4 @@
-"""Objects that are dropped: released above a table at a random place and in a random orientation (``drop_height``)."""
+"""Objects with a ``drop_height``: they are dropped above a table at a random place and in a random orientation."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def drop(
     """Return the pose in which an object is released, a sphere around it, and the number of rejected samples.
 
     ``draw_place`` draws a position (m, world frame), or ``None`` if nothing can be there. The height is uniform between
-    ``heights`` (m, world frame), the orientation uniform over all rotations. Raises ``SceneError`` without any room.
+    ``heights`` (m, world frame), the orientation uniform over all rotations. Raises ``SceneError`` if there is no room.
     """
     low, high = bounds_of(model.shapes)
     radius = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))

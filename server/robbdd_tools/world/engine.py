@@ -21,7 +21,7 @@ def version() -> str:
 
 
 WARNINGS: list[str] = []
-"""Warnings of the engine since the list was cleared (``engine_faults``)."""
+"""The engine's warnings since ``engine_faults`` last cleared the list."""
 
 
 def _keep(warning: object) -> None:

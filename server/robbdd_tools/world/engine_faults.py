@@ -1,4 +1,4 @@
-"""Warnings and errors of the physics engine: with any of them, a simulation proves nothing."""
+"""Warnings and errors of the physics engine. A simulation with one of them proves nothing."""
 
 from __future__ import annotations
 

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 SPACE = 0.15
-"""Height (m) of the workspace above an object whose file has no site 'workspace'."""
+"""If a file has no site 'workspace', the workspace above the object has this height (m)."""
 RIM = 16
-"""Points on each rim of a cylinder: the error between them is below 2 % of the radius."""
+"""Number of points on each rim of a cylinder: between them, the error is below 2 % of the radius."""
 
 
 def outline_of(model: ObjectModel) -> Outline:
@@ -41,7 +41,7 @@ def space_above(low: FloatArray, high: FloatArray) -> Region:
 
 
 def carrying(model: ObjectModel) -> ObjectModel:
-    """Return an object that carries a workspace: the space above it if its model has none of its own."""
+    """Return an object that carries a workspace. If its model has none, this is the space above it."""
     if model.region is not None or model.parts:
         return model
     return replace(model, region=space_above(*bounds_of(model.shapes)))

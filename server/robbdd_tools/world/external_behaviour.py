@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 VERSION = 1
 """Version of the protocol."""
 ANSWERS = 5.0
-"""Seconds within which a system answers, unless the model gives another limit."""
+"""A system must answer within this time (s), unless the model gives another limit."""
 STARTS = 30.0
-"""Seconds within which a system answers the first message after its start: it may load a policy."""
+"""A system must answer the first message after its start within this time (s): it may load a policy."""
 MOST_EVENTS = 100
-"""Limit of the events in one answer."""
+"""Maximum number of events in one answer."""
 
 _links: dict[tuple[str, str, str, str], SystemLink] = {}
-"""The links of this process, by kind, name, model and agent; they are kept between executions."""
+"""The links of this process by kind, name, model and agent. They are kept between executions."""
 
 
 def run_external_behaviour(
@@ -63,7 +63,7 @@ def _begin(
     behaviour: str,
     arguments: Arguments,
 ) -> SystemLink:
-    """Reset the system, which is started if it does not run. A link that has died since its last use is renewed."""
+    """Reset the system, or start it if it does not run. A link that has died since its last use is renewed."""
     message = {
         "type": "reset",
         "version": VERSION,

@@ -18,8 +18,8 @@ class FingerMotion:
     - ``open_joints``: positions of the gripper's joints when it is open. If it is empty, these are the joints of the
       pads, at the control value of the open gripper.
     - ``faces``: the geoms of each gripping face; empty if each pad is one.
-    - ``sweep``: how far (m) the fingers reach beyond the tool while they close, each with the distance of the faces (m)
-      there, from open to closed; empty if they slide.
+    - ``sweep``: pairs, from open to closed: the distance (m) of the faces, and how far (m) the fingers then reach
+      beyond the tool; empty if the fingers slide.
     """
 
     rate: float = 1.0

@@ -1,6 +1,6 @@
 """Faults of a scene instance that every run would have: models that cannot be used, and given poses that overlap.
 
-Nothing is sampled or stepped, and users' code is not executed. What depends on them is left out.
+Nothing is sampled or stepped, and users' code is not executed. Elements that depend on these are left out.
 """
 
 from __future__ import annotations
@@ -58,14 +58,14 @@ def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
 
 
 def without_code(instance: SceneInstance) -> SceneInstance:
-    """Return the instance without the models that users' code creates or that other findings are about."""
+    """Return the instance without the models that users' code creates or that other findings already report."""
     elements = (one for one in instance.elements if _is_known(usable_model(one.models, one.element)))
     models = tuple(model for model in instance.models if model.kind != "python")
     return replace(instance, models=models, elements=tuple(elements))
 
 
 def usable_model(models: tuple[ModelSource, ...], element: str) -> ModelSource | None:
-    """Return the model of an element that a run uses; ``None`` without any."""
+    """Return the model of an element that a run uses; ``None`` if there is none."""
     try:
         return usable(models, element)
     except SceneError:
