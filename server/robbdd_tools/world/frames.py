@@ -1,4 +1,4 @@
-"""Poses of the bodies of an executable scene: relative frames composed, random samples drawn."""
+"""Determine the poses of the bodies of an executable scene: compose relative frames and draw random samples."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 class PoseError(SceneError):
-    """A body has no pose, because its frames are not connected to the world, or a pose cannot be determined."""
+    """A body has no pose because its frames are not connected to the world, or its pose cannot be determined."""
 
 
 class Frames:
@@ -37,8 +37,9 @@ class Frames:
     def pose(self, iri: str, element: str, attempt: int = 0) -> Transform | None:
         """Return the pose of a body's own frame in the world, ``None`` for a body that no pose or joint places.
 
-        The body's own placement is drawn anew for each ``element`` and ``attempt``, that of its supports once. Raises
-        ``PoseError`` if no chain of frames connects it to the world or a distribution cannot be sampled.
+        The body's own placement is drawn again for each ``element`` and ``attempt``, the placement of its supports only
+        once. Raises ``PoseError`` if no chain of frames connects the body to the world or a distribution cannot be
+        sampled.
         """
         body = self._bodies.get(iri)
         if body is None:
@@ -62,7 +63,7 @@ class Frames:
         return next((body.iri for body in self._instance.bodies if body.iri.startswith(f"{tree}.")), None)
 
     def _known(self, body: Body, salt: str) -> dict[str, Transform]:
-        """Return the world poses of all reachable frames; poses are followed before joints."""
+        """Return the world poses of all reachable frames; poses are applied before joints."""
         origin: Transform = (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
         known: dict[str, Transform] = {"": origin}
         if self._instance.anchor:
@@ -153,7 +154,7 @@ def inverse(pose: Transform) -> Transform:
 
 
 def _onto(goal: FloatArray, start: FloatArray) -> FloatArray:
-    """Return the smallest rotation that aligns the child's axis ``start`` with the parent's ``goal``."""
+    """Return the smallest rotation that aligns the child's axis ``start`` with the parent's axis ``goal``."""
     axis = np.cross(start, goal)
     turn = np.empty(4)
     mujoco.mju_axisAngle2Quat(turn, axis, np.pi / 2 if axis.any() else 0.0)

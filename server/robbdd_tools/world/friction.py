@@ -1,7 +1,7 @@
 """Friction of a pair of surfaces: the smaller of the two coefficients counts.
 
-By default, the engine takes the larger coefficient, so rough pads would hold a part as slippery as ice; and where a
-file gives one geom a higher ``priority``, it takes only that geom's.
+By default, the engine takes the larger coefficient, so rough pads would hold a part as slippery as ice. If a file
+gives one geom a higher ``priority``, the engine takes only the coefficient of this geom.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 
 
 STIFF = (0.005, 1.0), (0.95, 0.99, 0.001, 0.5, 2.0)
-"""Parameters of stiff contacts (``solref``, ``solimp``), which the pads of the catalog's grippers have, too."""
+"""Parameters of stiff contacts (``solref``, ``solimp``), the same as for the pads of the catalog's grippers."""
 
 
 def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
-    """Make the smoother geom of each contact decisive, by priorities that replace those of the files.
+    """Replace the priorities of the files, so that the smoother geom of each contact determines the friction.
 
-    The decisive geom supplies all contact parameters. So it gets the largest ``condim`` and the largest torsional and
-    rolling friction (m) of the rougher geoms, as the engine would have combined them: a ball also comes to rest on a
-    smooth board. Those of ``pads`` (names of geoms) are unchanged.
+    This geom supplies all contact parameters. So it gets the largest ``condim`` and the largest torsional and rolling
+    friction (m) of the rougher geoms, as the engine would have combined them: a ball also comes to rest on a smooth
+    board. The parameters of ``pads`` (names of geoms) are not passed on.
     """
     own = set(pads)
     levels: defaultdict[float, list[Any]] = defaultdict(list)
@@ -49,8 +49,9 @@ def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
 def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
     """Declare the contacts of gripping faces with the parts that they may grip, all given as names of geoms.
 
-    Sliding friction is the smaller of the two. Torsional friction (m) is that times the radius of the pad's contact
-    patch, which is the ratio of the pad's coefficients. Stiffness is the pad's: on soft pads, a light part slips out.
+    The sliding friction is the smaller of the two. The torsional friction (m) is this value times the radius of the
+    pad's contact patch, which is the ratio of the pad's coefficients. The pad gives the stiffness: on soft pads, a
+    light part slips out.
     """
     faces: list[Any] = [spec.geom(name) for name in pads]
     gripped: list[Any] = [spec.geom(name) for name in parts]
@@ -66,10 +67,10 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
 
 
 def pair_stiff(spec: Any, jaws: Iterable[str], parts: Iterable[str]) -> None:
-    """Declare the contacts of things with moving parts with loose parts, as stiff as those of gripping faces.
+    """Declare contacts of things with moving parts (``jaws``) and loose parts, as stiff as contacts of gripping faces.
 
-    The engine's own stiffness grows with the mass: between a drawer and its chest, a light part that is too large would
-    yield by millimetres under the force of a gripper.
+    The engine's own stiffness grows with the mass: a light part that is too large and jams between a drawer and its
+    chest would yield by millimetres under the force of a gripper.
     """
     for jaw, part in product(jaws, parts):
         pair = _pair_of(spec, jaw, part)
@@ -87,9 +88,9 @@ def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> 
 def pair_given(spec: Any, frictions: Iterable[Friction], geoms: Mapping[str, list[str]]) -> None:
     """Give pairs of elements the sliding friction that a scene instance states.
 
-    ``geoms`` are the names of the geoms of each element that is present; those of an agent are its gripping faces.
-    Torsional friction (m) keeps its ratio to the sliding friction. Stiffness is that of the pads, or of the smoother
-    geom.
+    ``geoms`` are the names of the geoms of each element that is present; for an agent, these are its gripping faces.
+    The torsional friction (m) keeps its ratio to the sliding friction. The pads, or else the smoother geom, give the
+    stiffness.
     """
     declared: dict[frozenset[str], Any] = {frozenset((pair.geomname1, pair.geomname2)): pair for pair in spec.pairs}
     for friction in frictions:

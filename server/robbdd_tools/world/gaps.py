@@ -29,16 +29,16 @@ MEASURABLE = frozenset(
         mujoco.mjtGeom.mjGEOM_MESH,
     )
 )
-"""The convex shapes. A mesh counts as its convex hull, as it does for contacts, so its gap is never too wide."""
+"""The convex shapes. A mesh is measured as its convex hull, like in contacts, so its gap is never too wide."""
 FAR = 1e3
-"""Distance (m) that no two elements exceed."""
+"""No two elements are farther apart than this (m)."""
 
 
 class GapSampler:
     """Measures the distance of the surfaces of two elements at samples of the recording.
 
-    The surfaces are those that take part in contacts. An element without any, or with one that is not convex, has no
-    measurements.
+    It measures the surfaces that take part in contacts. An element without such surfaces, or with one that is not
+    convex, has no measurements.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -87,7 +87,7 @@ class GapSampler:
         return [(a, b) for a, b in sorted(pairs) if a in self._geoms and b in self._geoms]
 
     def _gap(self, pair: tuple[str, str], state: FloatArray) -> float:
-        """Return the smallest distance over all pairs of geoms; those that cannot be the nearest are not measured."""
+        """Return the smallest distance over all pairs of geoms; pairs that cannot be the nearest are not measured."""
         model, data = self._simulation.model, self._data
         if self._posed is None or not np.array_equal(self._posed, state):
             data.qpos[:] = self._posed = state.copy()

@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 ROUND = 8
 """Number of directions tried on a round object."""
 PLAY = 0.004
-"""Minimum clearance between an object and the open gripper, m."""
+"""Minimum clearance (m) between an object and the open gripper."""
 DEPTH = 0.030
-"""Maximum depth of the tool below an object's top, m: the length of the fingers."""
+"""Maximum depth (m) of the tool below an object's top: the length of the fingers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grasp:
     """The tool's position (3,) m, the direction (rad) across the tool, and the object's width there (m).
 
-    Fingers close along that direction. ``below`` is the object's extent below the tool, m.
+    Fingers close along this direction. ``below`` is the object's extent below the tool, m.
     """
 
     position: FloatArray
@@ -73,7 +73,7 @@ def _highest(
 ) -> tuple[FloatArray, list[tuple[float, float]], float]:
     """Return centre (3,) m, closing directions (rad, width in m) and top (m) of the part to grip.
 
-    It is the highest part above or below the object's position: a neck, but not the wall of a bin.
+    This is the highest part directly above or below the object's position: a neck, but not the wall of a bin.
     """
     best: tuple[FloatArray, list[tuple[float, float]], float] | None = None
     for shape in model.shapes:

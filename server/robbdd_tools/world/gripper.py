@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 CLOSING = 0.05
 """Speed of one finger, m/s."""
 PATIENCE = 60
-"""Ticks beyond the closing time after which the object counts as missed."""
+"""The gripper has missed the object if it does not hold it this many ticks after the closing time."""
 OFF = 0.002
-"""Distance (m) of rotating fingers from what an object stands on."""
+"""Rotating fingers keep this distance (m) from the support of an object."""
 STANDOFF, PRESS = 0.015, 0.010
-"""Height above the object where a cup's slow descent starts, and depth below its top where it gives up, m."""
+"""A cup starts its slow descent this high (m) above the object and gives up this deep (m) below the object's top."""
 DESCENT = 0.05
 """Speed of a cup just before contact, m/s."""
 
 Step = Iterator[None]
-"""Yields once per control tick: the controls are set, and the world may be stepped."""
+"""Yields once per control tick, when the controls are set and the world may be stepped."""
 
 
 class Hand(Protocol):
-    """The interface between a gripper and the controller that moves it. ``control`` is the value of its actuator."""
+    """The interface between a gripper and the controller that moves it. ``control`` is the gripper's actuator value."""
 
     control: float
 
@@ -48,7 +48,7 @@ class Hand(Protocol):
         ...
 
     def senses_object(self, name: str) -> bool:
-        """Whether the gripping faces hold an object."""
+        """Return whether the gripping faces hold an object."""
         ...
 
     @property
@@ -82,7 +82,7 @@ class Gripper(ABC):
         """Close without an object, so that the gripper can push."""
 
     def control_around(self, width: float) -> float:
-        """Return the control value of a gripper that is open just enough for a width (m), where this is known."""
+        """Return the control value at which the gripper is open just enough for a width (m), where this is known."""
         del width
         return self._robot.gripper_open
 
@@ -101,7 +101,7 @@ class Fingers(Gripper):
         return [self._off_the_support(grasp) for grasp in found]
 
     def _off_the_support(self, grasp: Grasp) -> Grasp:
-        """Return a grasp so high that the tips of rotating fingers pass over what the object stands on."""
+        """Return the grasp, raised if necessary, so that the tips of rotating fingers clear the object's support."""
         reach = self._motion.reach(grasp.width)
         lift = reach + OFF - grasp.below if reach else 0.0
         if lift <= 0.0:
@@ -132,9 +132,9 @@ class Fingers(Gripper):
         yield from self.open_to(hand, self._robot.gripper_closed)
 
     def control_around(self, width: float) -> float:
-        """Return the control value of fingers that are open just enough for a width (m).
+        """Return the control value at which the fingers are open just enough for a width (m).
 
-        It is that of the open gripper for fingers from files, whose positions in between are unknown.
+        For fingers from files, whose positions in between are unknown, return the value of the open gripper.
         """
         if self._motion.open_joints:
             return self._robot.gripper_open

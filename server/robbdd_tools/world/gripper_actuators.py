@@ -1,4 +1,4 @@
-"""Actuators of grippers in users' model files: found, coupled or added."""
+"""Find, couple or add the actuators of grippers in users' model files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 GRIP_FORCE = 15.0
 """Force (N) of each finger of a gripper whose file has no actuator."""
 GRIP_STIFFNESS, GRIP_DAMPING = 3000.0, 60.0
-"""Position and velocity gains (N/m, N s/m) of such a gripper; a rotating finger has them times its length squared."""
+"""Position and velocity gains (N/m, N s/m) of an added actuator, times the squared length for a rotating finger."""
 SUCTION_FORCE = 42.0
-"""Pull (N) of a suction cup whose file has no actuator: that of the catalog's cup."""
+"""Pull (N) of a suction cup whose file has no actuator: the same as of the catalog's cup."""
 
 
 class GripperParts:
-    """The parts of a gripper in the engine's editable description of an arm: the body ``palm`` and all beyond it.
+    """The parts of a gripper in the engine's editable description of an arm: ``palm`` and all bodies that it carries.
 
     Errors end with ``note``.
     """
@@ -47,7 +47,7 @@ class GripperParts:
         return [joint for body in self.bodies[1:] for joint in body.joints]
 
     def error(self, text: str, keyword: str = "") -> SceneError:
-        """Return an error about the gripper, and about the entry of the model with a keyword."""
+        """Return an error about the gripper; ``keyword`` is that of the wrong entry of the model, if any."""
         entry = ModelEntry(keyword) if keyword else None
         reason = f"the gripper of {self.source.name} {text}{self._note}"
         return SceneError(reason, origin=self.source.origin, entry=entry)
@@ -78,7 +78,7 @@ class GripperActuator:
         self._arm = parts.arm
 
     def find(self) -> Any:
-        """Return the gripper's actuator; one is added for a joint without one, and several are coupled."""
+        """Return the gripper's actuator. Add one for a joint without an actuator; couple several."""
         name = self._arm.actuator
         if name:
             found = self._spec.actuator(name)
@@ -124,7 +124,7 @@ class GripperActuator:
         )
 
     def _follows(self, joint: Any) -> bool:
-        """Return whether an equality makes a joint follow another one."""
+        """Return whether an equality constraint makes a joint follow another one."""
         return any(one.type == mujoco.mjtEq.mjEQ_JOINT and one.name1 == joint.name for one in self._spec.equalities)
 
     def _servo(self, joint: Any) -> Any:
@@ -148,7 +148,7 @@ class GripperActuator:
         return actuator
 
     def _coupled(self, actuators: Sequence[Any]) -> Any:
-        """Return the first of several actuators, which then moves all fingers with the force of them all."""
+        """Return the first of several actuators after coupling: it moves all fingers with the force of all of them."""
         first, *others = actuators
         if others and any(one.trntype != mujoco.mjtTrn.mjTRN_JOINT for one in actuators):
             names = ", ".join(str(one.name) for one in actuators)
@@ -173,7 +173,7 @@ class GripperActuator:
 
 
 def gripping_face(spec: Any, source: ModelSource, name: str) -> Any:
-    """Return a gripping face; for a body of that name, its first collision shape. Raises ``SceneError``."""
+    """Return the gripping face ``name``: a geom, or the first collision shape of a body. Raises ``SceneError``."""
     geom = spec.geom(name)
     if geom is not None:
         return geom
@@ -195,7 +195,7 @@ def make_rubber(face: Any) -> None:
 
 
 def _is_mirrored(one: FloatArray, other: FloatArray) -> bool:
-    """Return whether two ranges of values are opposite, as those of two fingers that move in opposite directions."""
+    """Return whether two ranges of values are opposite, like for two fingers that move in opposite directions."""
     return bool(one[0] != one[1] and abs(one[0] + other[1]) + abs(one[1] + other[0]) < 1e-6 and one[0] != other[0])
 
 

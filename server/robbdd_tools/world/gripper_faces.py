@@ -1,4 +1,4 @@
-"""Gripping faces of two and more fingers, found by where their parts are when the gripper is open and closed."""
+"""Find the gripping faces of two or more fingers: compare where their parts are with the gripper open and closed."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
 Faces = tuple[tuple[str, ...], ...]
 """The names of the geoms of each gripping face."""
 MOVES = 0.004
-"""Smallest change of the distance between two gripping faces, m."""
+"""The distance between two gripping faces changes by at least this much (m)."""
 NEVER_MEET = 0.02
-"""Distance (m) between closed faces from which on a gripper cannot hold the catalog's smallest object, 31.5 mm."""
+"""If closed faces are farther apart (m), a gripper cannot hold the catalog's smallest object, 31.5 mm."""
 TIPS = 0.8
-"""Share of the largest such change from which on a shape of the same finger belongs to its gripping face."""
+"""A shape of a finger belongs to its gripping face if its distance changes by this share of the largest change."""
 OPPOSITE = -0.35
-"""Cosine of the angle between opposite movements: three rotating fingers around a hand are 110° to 120° apart."""
+"""Movements up to this cosine of their angle are opposite: three fingers around a hand are 110° to 120° apart."""
 OPENS = 0.015
-"""Smallest opening (m) of fingers: parts of a linkage that approach each other by less are none."""
+"""Fingers open by more than this (m): parts that approach each other by less belong to a linkage."""
 LEVEL = 0.003
-"""Difference (m) of the distances of closed shapes up to which they form one gripping face."""
+"""Pairs of closed shapes form the gripping faces if their distance exceeds the smallest by at most this (m)."""
 SMOOTH = 0.01
-"""Coefficient below which a surface has no friction; smaller ones cannot be configured either."""
+"""A surface with a coefficient below this has no friction; smaller coefficients cannot be configured either."""
 
 
 def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, FloatArray]) -> Faces:
-    """Return the shapes of the two fingers that approach each other most and meet; nothing without such fingers.
+    """Return the shapes of the two fingers that approach each other most and meet; empty without such fingers.
 
-    A further finger that closes on one of the two, like the second finger beside a thumb, belongs to the face of the
+    Another finger that closes on one of the two, like the second finger opposite a thumb, belongs to the face of the
     other one. ``bodies`` are those of the gripper, the palm first. ``states`` are the joint positions of the model at
-    the two ends of the actuator's values.
+    the two ends of the actuator's range.
     """
     palm = bodies[0]
     fingers = _fingers(model, bodies)
@@ -46,7 +46,7 @@ def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, Floa
     moving = [body for body in fingers if body != base]
     branch = {body: _branch(model, body, palm) for body in moving}
     moves = _movements(model, fingers, states)
-    # Fingers around a hand that swing far move ahead, too, all alike: only the rest of their movements is opposite.
+    # Fingers around a hand that swing far also move ahead, all alike: only the rest of their movements is opposite.
     common = np.mean([moves[body] for body in moving] or [np.zeros(3)], axis=0)
     apart = [
         (one, other)
@@ -76,7 +76,7 @@ def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, Floa
 
 
 def _extended(faces: Faces, side: int, names: Sequence[str]) -> Faces:
-    """Return the faces with shapes added to one of them, unless a face has them."""
+    """Return the faces with shapes added to the face ``side``, except those that a face already has."""
     new = tuple(name for name in names if _new(faces, name))
     return tuple((*face, *new) if number == side else face for number, face in enumerate(faces))
 
@@ -95,7 +95,7 @@ def _fingers(model: Any, bodies: Sequence[int]) -> dict[int, list[int]]:
 def _tips(
     model: Any, one: Sequence[str], other: Sequence[str], states: Mapping[float, FloatArray]
 ) -> tuple[float, Faces]:
-    """Return the shapes of two fingers that meet when closed, and by how much their distance changes (m)."""
+    """Return the largest change (m) of the distance of two fingers' shapes, and the faces that meet when closed."""
     changes: dict[tuple[str, str], tuple[float, float]] = {}
     for names in product(one, other):
         near, far = sorted(max(0.0, gap(model, state, ((names[0],), (names[1],)))) for state in states.values())
@@ -110,7 +110,7 @@ def _tips(
 
 
 def _together(model: Any, pairs: Sequence[tuple[str, str]], states: Mapping[float, FloatArray], change: float) -> Faces:
-    """Return two faces made of pairs of shapes, without those that narrow the opening: a finger's root moves little."""
+    """Return two faces made of pairs of shapes, except pairs that narrow the opening: a finger's root moves little."""
     faces: Faces = ((), ())
     for pair in pairs:
         wider = tuple((*face, *_new(faces, name)) for face, name in zip(faces, pair, strict=True))
@@ -127,7 +127,7 @@ def _new(faces: Faces, name: str) -> tuple[str, ...]:
 def _movements(
     model: Any, fingers: Mapping[int, Sequence[int]], states: Mapping[float, FloatArray]
 ) -> dict[int, FloatArray]:
-    """Return how far (m, shape (3,)) the shape of each finger that moves most moves between the two states."""
+    """Return for each finger the movement (m, shape (3,)) between the two states of its shape that moves most."""
     data = mujoco.MjData(model)
     places: list[FloatArray] = []
     for state in states.values():
@@ -139,19 +139,19 @@ def _movements(
 
 
 def _approach(one: FloatArray, other: FloatArray) -> bool:
-    """Return whether two movements (m) are opposite, or one of them is none."""
+    """Return whether two movements (m) are opposite or one of them is negligible."""
     lengths = float(np.linalg.norm(one)), float(np.linalg.norm(other))
     return min(lengths) < MOVES / 4 or float(one @ other) <= OPPOSITE * lengths[0] * lengths[1]
 
 
 def _joints_to(model: Any, body: int, palm: int) -> int:
-    """Return the number of joints between a body and the palm: equal for the tips of both fingers."""
+    """Return the number of joints between a body and the palm: it is equal for the tips of both fingers."""
     below = set(_ancestors(model, body)) - set(_ancestors(model, palm))
     return sum(int(model.body_jntnum[one]) for one in below)
 
 
 def _branch(model: Any, body: int, palm: int) -> int:
-    """Return the body next to the palm on the way from it to a body."""
+    """Return the child of the palm that carries a body."""
     path = list(_ancestors(model, body))
     return path[path.index(palm) - 1] if palm in path else body
 
@@ -197,9 +197,9 @@ def length_of(model: Any, joint: str) -> float:
 
 
 def refuse_smooth_faces(spec: Any, robot: RobotModel, source: ModelSource) -> None:
-    """Raise ``SceneError`` if no gripping face of an arm in a file has friction, so that they hold 2 μ N = 0.
+    """Raise ``SceneError`` if no gripping face of an arm in a file has friction: they would hold 2 μ N = 0.
 
-    Such files count on the engine's own rule, by which the larger coefficient of two surfaces decides.
+    Files without friction rely on the engine's own rule that the larger coefficient of two surfaces counts.
     """
     if max(float(spec.geom(pad).friction[0]) for pad in robot.pads) >= SMOOTH:
         return

@@ -1,4 +1,4 @@
-"""Grippers of users' model files: their actuator, gripping faces and opening, as the file's own physics gives them."""
+"""Grippers of users' model files: find actuator, gripping faces and opening by simulating the file."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 SETTLING, STILL = 5000, 1e-3
-"""Largest number of steps of 2 ms in which a gripper opens or closes; speed (rad/s, m/s) of joints at rest."""
+"""A gripper opens or closes within this many steps of 2 ms; joints slower than this (rad/s, m/s) are at rest."""
 BETWEEN = 0.02
-"""Change of a joint (rad, m) between two states of a closing gripper."""
+"""A state of a closing gripper is recorded each time a joint has moved by more than this (rad, m)."""
 CONTRADICTION = 0.25
-"""Share by which a stated stroke may differ from the measured one."""
+"""A stated stroke may differ from the measured one by this share."""
 SLACK = 1e-6
-"""How far a stated value may be outside the range of the actuator: files round."""
+"""A stated value may be this far outside the actuator's range, because files round."""
 TIP = 0.015
-"""Distance (m) of the tool from the ends of the gripping faces, half the length of usual pads."""
+"""The tool is this far (m) from the ends of the gripping faces: half the length of usual pads."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +40,10 @@ class FoundGripper:
     - ``rate``: change of the actuator's value per metre that a finger moves.
     - ``settling``: how long (s) the fingers take from one end to the other.
     - ``open_joints``: the positions of the gripper's joints when it is open.
-    - ``sweep``: how far (m) rotating fingers reach beyond the tool while they close, each with the distance of the
-      faces (m) there.
-    - ``middle``, ``across``, ``ahead``: the place (m) between the closed fingers at their tips, the direction in which
-      they close and the one out of the hand, in the frame of the palm, shape (3,) each.
+    - ``sweep``: pairs for rotating fingers, from open to closed: the distance (m) of the faces, and how far (m) the
+      fingers then reach beyond the tool.
+    - ``middle``, ``across``, ``ahead``: the place (m) between the tips of the closed fingers, the closing direction,
+      and the direction out of the hand, in the frame of the palm, shape (3,) each.
     """
 
     kind: GripperKind
@@ -90,7 +90,7 @@ class GripperReader:
         return self._fingers(model, actuator, faces, (opened, closed), states, gaps)
 
     def _controls(self, actuator: Any) -> tuple[float, float]:
-        """Return the two ends of the actuator's values."""
+        """Return the two ends of the actuator's range, as stated or from the file."""
         opened, closed = self._arm.open, self._arm.closed
         low, high = (float(value) for value in actuator.ctrlrange)
         if opened is None and closed is None and low >= high:
@@ -108,7 +108,7 @@ class GripperReader:
         return min(opened, closed), max(opened, closed)
 
     def _refuse_outside(self, actuator: Any) -> None:
-        """Raise ``SceneError`` if a stated value is outside the range of an actuator: the engine would change it."""
+        """Raise ``SceneError`` if a stated value is outside the actuator's range: the engine would clamp it."""
         model = self._parts.compiled()
         number = model.actuator(actuator.name).id
         low, high = (float(bound) for bound in model.actuator_ctrlrange[number])
@@ -155,7 +155,7 @@ class GripperReader:
         return faces
 
     def _settled(self, model: Any, actuator: Any, control: float) -> FloatArray:
-        """Return the joint positions of the whole model when the gripper has moved to a value of its actuator."""
+        """Return the joint positions of the whole model after the gripper has moved to an actuator value."""
         data = mujoco.MjData(model)
         model.opt.gravity[:] = 0.0
         model.opt.timestep = 0.002
@@ -233,8 +233,9 @@ class GripperReader:
     ) -> Iterator[tuple[float, float]]:
         """Yield the distance of the faces (m) and how far (m) the fingers reach beyond the tool, from open to closed.
 
-        ``way`` is the open position of all joints and the value that closes the gripper, ``tool`` the direction out of
-        the hand and how far the tool is along it. Nothing for fingers that slide: they always reach as far.
+        ``way`` holds the positions of all joints when open, and the value that closes the gripper. ``tool`` holds the
+        direction out of the hand, and how far the tool is along it. Sliding fingers yield nothing: they always reach
+        equally far.
         """
         if not any(joint.type == mujoco.mjtJoint.mjJNT_HINGE for joint in self._parts.joints):
             return
@@ -256,7 +257,7 @@ class GripperReader:
             yield gap(model, state, faces), lowest - tool[1]
 
     def _fixed(self, model: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the addresses of the positions and speeds of all joints but those of the gripper."""
+        """Return the addresses of the positions and speeds of all joints except the gripper's."""
         behind = {str(joint.name) for joint in self._parts.joints}
         fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
         return model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
@@ -300,7 +301,7 @@ class GripperReader:
 
 
 def _states_on_the_way(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> list[FloatArray]:
-    """Return the joint positions at equal distances until the gripper is at rest; the other joints stay."""
+    """Return joint positions about ``BETWEEN`` apart until the gripper is at rest; the other joints stay in place."""
     start = data.qpos[places].copy()
     found = [data.qpos.copy()]
     for step in range(SETTLING):
@@ -314,7 +315,7 @@ def _states_on_the_way(model: Any, data: Any, places: FloatArray, speeds: FloatA
 
 
 def _move_alone(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> int:
-    """Step until the gripper is at rest; the other joints, given by their addresses, stay. Returns the last step."""
+    """Step until the gripper is at rest; return the last step. ``places`` and ``speeds`` address joints that stay."""
     start = data.qpos[places].copy()
     step = 0
     for step in range(SETTLING):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.robot import Robot
 
 ASKEW = cos(radians(20.0))
-"""Minimum cosine between a cup's axis and the surface normal at which its lip still seals."""
+"""A cup's lip seals if the cosine of the angle between the cup's axis and the surface normal is at least this."""
 
 Contacts = Mapping[int, int]
 """Column of a loose object (-1 for anything else) → number of a contact with it."""
@@ -24,9 +24,9 @@ Contacts = Mapping[int, int]
 class Grips:
     """Detects grips in the contacts of a simulation.
 
-    Fingers hold what all their pads touch; a cup holds what its face touches while the vacuum is on. ``held`` maps an
-    agent to an array with 1 in the columns of held objects; ``leaking`` are the agents whose cup touches something
-    without sealing on it.
+    Fingers hold an object that all their pads touch; a cup holds an object that its face touches while the vacuum is
+    on. ``held`` maps an agent to an array with 1 in the columns of held objects. ``leaking`` are the agents whose cup
+    touches something without sealing.
     """
 
     def __init__(self, model: Any, robots: Mapping[str, Robot], columns: Mapping[str, int], loose: list[str]) -> None:

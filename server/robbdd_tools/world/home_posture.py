@@ -1,4 +1,4 @@
-"""A home posture for arms whose file has none: the tool points down in front of the base, far from joint limits."""
+"""Find a home posture for arms whose file has none: the tool points down ahead of the base, far from joint limits."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource
 
 DOWN = np.cos(np.radians(20.0))
-"""Cosine of the angle to the vertical up to which a tool points down."""
+"""A tool points down if the cosine of its angle to the vertical is at least this."""
 SEEDS = 40
-"""Random postures from which the search starts; they are the same in every run."""
+"""Number of random postures from which the search starts; they are the same in every run."""
 ROUNDS = 80
 CLOSE = 1e-3
-"""Pose error (m and rad) at which a posture is accepted."""
+"""A posture is accepted if its pose error is below this (m and rad)."""
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15)
 """Places of the tool: shares of the arm's reach ahead of the base, and heights (m) above it."""
 TRAVEL, GRASP = (0.35, 0.45, 0.25, 0.60, 0.80), (0.30, 0.15)
-"""Heights (m) above the world's origin for a tilted arm: it works at those of tables, wherever it is fixed.
+"""Heights (m) above the world's origin for a tilted arm: it works at the heights of tables, wherever it is fixed.
 
-The first ones are for the home, the others to compare postures.
+``TRAVEL`` are heights of the home posture; at the heights ``GRASP``, postures are compared.
 """
 OUTWARDS, LEVELS = (0.65, 0.75, 0.85, 0.95), (0.25, 0.0)
-"""Places at which a posture is compared with others: shares of the arm's reach from the middle on, heights (m)."""
+"""Places at which postures are compared: shares of the arm's reach from the base outwards, and heights (m)."""
 JUMP = 1.0
-"""Difference (rad, m) from which on two neighbouring postures are not on one path."""
+"""Two neighbouring postures are not on one path if a joint differs by more than this (rad, m)."""
 SAME = 0.1
-"""Difference (rad, m) up to which two postures are the same."""
+"""Two postures are the same if all joints differ by at most this (rad, m)."""
 
 
 def find_home(
@@ -48,10 +48,10 @@ def find_home(
     named: Iterable[Mapping[str, float]] = (),
     height: float | None = None,
 ) -> tuple[float, ...]:
-    """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best one of a search.
+    """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best posture of a search.
 
-    ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Positions of joints that are
-    ``named`` elsewhere count like key frames. ``height`` is that of a tilted base above the world's origin (m). Raises
+    ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Postures that are ``named``
+    elsewhere are tried after key frames. ``height`` (m) is the height of a tilted base above the world's origin. Raises
     ``SceneError`` if the arm has no such posture.
     """
     search = _Search(model, joints, tool, fingers, palm, height)
@@ -121,7 +121,7 @@ class _Search:
         return bool(-turn[2, 2] >= DOWN and place[0] > 0.1 and self._is_clear())
 
     def postures(self) -> Iterator[FloatArray]:
-        """Yield the postures at the first of the places that the arm reaches."""
+        """Yield the postures at the first place that the arm reaches without self-collision."""
         dice = np.random.default_rng(1)
         span = np.minimum(self._high, np.pi) - np.maximum(self._low, -np.pi)
         starts = np.maximum(self._low, -np.pi) + dice.random((SEEDS, len(self._low))) * span
@@ -136,9 +136,10 @@ class _Search:
                     return
 
     def straightened(self, posture: FloatArray) -> FloatArray:
-        """Return a posture at the same place whose fingers close across the way ahead, if there is one.
+        """Return a posture at the same place whose fingers close sideways, if there is one, else the posture.
 
-        From there, the wrist turns as far to either side as grasps need; otherwise a limit of it may be in the way.
+        From it, the wrist can turn to either side as far as grasps need. From others, its joint limit may be in the
+        way.
         """
         place, _ = self._forward(posture)
         found = [
@@ -149,15 +150,15 @@ class _Search:
         return max(found, key=lambda one: self._room(one)[-1], default=posture)
 
     def quality(self, posture: FloatArray) -> tuple[int, float]:
-        """Return the number of places that the arm reaches from a posture, then how comfortable the posture is.
+        """Return the number of places that the arm reaches from a posture, and how comfortable the posture is.
 
-        An arm has up to eight postures for one place, between which it cannot change on its way; a wrist that is turned
-        inwards reaches less of the table.
+        An arm has up to eight postures for one place and cannot change between them on its way. An arm whose wrist is
+        turned inwards reaches less of the table.
         """
         return sum(self._reached(posture, height) for height in self._levels), self._comfort(posture)
 
     def _reached(self, posture: FloatArray, height: float) -> int:
-        """Return how many of the places at a height the arm reaches one after the other."""
+        """Return how many places at a height the arm reaches one after the other, without a change of posture."""
         for number, share in enumerate(OUTWARDS):
             after = self._solved(posture, np.array([share * self._reach, 0.0, height]))
             if after is None or np.abs(after - posture).max() > JUMP or not self._is_clear_at(after):
@@ -166,7 +167,7 @@ class _Search:
         return len(OUTWARDS)
 
     def _comfort(self, posture: FloatArray) -> float:
-        """Return how far a posture is from its joint limits, as a share, and from a stretched arm."""
+        """Return a score: best far from joint limits and from a stretched arm, with links high up and in the middle."""
         room = self._room(posture)
         self._forward(posture)
         stretches: list[float] = np.linalg.svd(self._jacobian()[:3], compute_uv=False).tolist()
@@ -222,14 +223,14 @@ class _Search:
         return self._is_clear()
 
     def _is_clear(self) -> bool:
-        """Return whether no parts of the arm touch but those that are always near each other."""
+        """Return whether only those parts of the arm touch that are always near each other."""
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
         bodies = self._model.geom_bodyid[self._data.contact.geom]
         return all(self._near[one, other] for one, other in bodies.tolist())
 
     def _always_near(self, palm: int) -> FloatArray:
-        """Return for each pair of bodies 1 if at most two joints are between them, or if both belong to the gripper."""
+        """Return 1 for each pair of bodies at most ``NEAR`` joints apart and for each pair of bodies of the gripper."""
         joints = self._model.body_jntnum
         paths = [frozenset(self._path(body)) for body in range(self._model.nbody)]
         return np.array(

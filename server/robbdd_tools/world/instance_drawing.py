@@ -1,4 +1,4 @@
-"""Draw a scene instance as it is before anything moves: shapes and poses as plain data. Users' code is not executed."""
+"""Draw a scene instance before anything moves: shapes and poses as plain data. Users' code is not executed."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ SOLID = "/solid"
 def drawn_instance(instance: SceneInstance) -> tuple[dict[str, Any], list[SceneError]]:
     """Return a scene instance in the form of ``docs/schemas/scene.schema.json``, and its faults.
 
-    Sampled poses are those of the first seed. An element without a pose, or whose model is created by users' code, is
-    in ``missing``.
+    Poses are sampled with the first seed. Elements without a pose, and elements with a model that users' code creates,
+    are in ``missing``.
     """
     known, faults, placed, sampled = without_code(instance), list[SceneError](), Placed(), Placed()
     drawn: dict[str, Any] = {"shapes": [], "meshes": [], "workspaces": [], "bodies": [], "sampled": []}

@@ -1,4 +1,4 @@
-"""How far arms are from the limits of their joints."""
+"""Measure how far arms are from their joint limits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def joint_clearances(robots: Iterable[Robot], states: FloatArray) -> Mapping[str, FloatArray]:
-    """Return each robot's smallest distance of a joint from a limit at recorded states (n, width), shape (n,).
+    """Return for each robot how near any joint is to a limit at recorded states (n, width), shape (n,).
 
     The distance is a share of the joint's range, so that turning and sliding joints can be compared; it is negative
     beyond the limit. Robots without limited joints are missing.

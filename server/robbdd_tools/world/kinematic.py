@@ -1,4 +1,4 @@
-"""A world without physics: arms and objects in their grippers move as commanded, everything else stays where it is."""
+"""A world without physics: arms, and objects in their grippers, move as commanded; everything else stays in place."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from robbdd_tools.world.robot import Robot
 
 NEAR = 0.005
-"""Distance (m) from the tool's centre point up to which a gripper that closes takes an object."""
+"""A closing gripper takes an object that is at most this far (m) from the tool's centre point."""
 LOWEST, INWARDS = 0.005, 0.9
-"""Height (m) of the points of an object that can rest on something; factor of their distance from its middle."""
+"""Points less than this (m) above an object's lowest point are its feet; this factor moves them towards its middle."""
 DOWN = np.array([0.0, 0.0, -1.0])
 ABOVE = 1e-3
-"""Height (m) above a surface from which the surface below is searched: resting contacts penetrate a little."""
+"""The search for the surface below starts this far (m) above an object's lowest point: contacts penetrate a little."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class KinematicSimulation(Simulation):
         self._taken: dict[str, _Held] = {}
         self._inside: dict[str, tuple[_Held, ...]] = {}
         for robot in self.robots.values():
-            # Nothing lags behind, so no target leads.
+            # Nothing lags, so targets need no lead.
             robot.lead = np.zeros_like(robot.lead)
             if robot.mobile is not None:
                 robot.mobile.lead = 0.0
@@ -88,17 +88,17 @@ class KinematicSimulation(Simulation):
         self.restart()
 
     def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
-        """Set where the joints (rad, shape (n,)) are after the next tick, and the gripper."""
+        """Set the joint positions (rad, shape (n,)) after the next tick, and the gripper's control value."""
         self._goals[robot.name] = np.array(joints, dtype=float)
         self._controls[robot.name] = opening
 
     def drive(self, robot: Robot, pose: FloatArray) -> None:
-        """Set where a mobile base is after the next tick."""
+        """Set the pose of a mobile base after the next tick."""
         assert robot.mobile is not None, "only mobile bases drive"
         self._bases[robot.name] = robot.mobile.positions_at(pose)
 
     def velocity(self, name: str) -> Velocity:
-        """Return the velocity of an object's position (m/s) and rotation (rad/s) since the sample before."""
+        """Return the velocity of an object's position (m/s) and rotation (rad/s) since the previous sample."""
         states = self.recorder.states
         after = self.pose(name)
         if len(states) < 2:
@@ -109,14 +109,14 @@ class KinematicSimulation(Simulation):
         return velocity_between((body.xpos.copy(), body.xmat.reshape(3, 3).copy()), after, TICK)
 
     def joint_velocities(self, robot: Robot) -> FloatArray:
-        """Return the velocities of an arm's joints (rad/s, shape (n,)) since the sample before."""
+        """Return the velocities of an arm's joints (rad/s, shape (n,)) since the previous sample."""
         states = self.recorder.states
         if len(states) < 2:
             return np.zeros(len(robot.joints))
         return (states[-1, robot.joints] - states[-2, robot.joints]) / TICK
 
     def contact_force(self, first: str, second: str) -> float:
-        """Raises ``SimulationError``: this world has no forces."""
+        """Raise ``SimulationError``: this world has no forces."""
         raise SimulationError(f"the kinematic world has no forces, so none between {first} and {second}")
 
     def targets(self, robot: Robot) -> FloatArray:
@@ -144,25 +144,25 @@ class KinematicSimulation(Simulation):
         self.stepping += perf_counter() - began
 
     def _sense(self) -> None:
-        """Note what each gripper holds."""
+        """Record which object each gripper holds."""
         for agent, grip in self._grips.held.items():
             grip[:] = 0.0
             if agent in self._taken:
                 grip[self._column[self._taken[agent].name]] = 1.0
 
     def _closing(self, robot: Robot) -> float:
-        """Return how far the gripper was closed (positive) or opened in this tick, in units of its control."""
+        """Return how far the gripper closed (positive) or opened (negative) in this tick, in units of its control."""
         model = robot.model
         change = self._controls[robot.name] - self._before[robot.name]
         return change if model.gripper_closed > model.gripper_open else -change
 
     def _sucks(self, robot: Robot) -> bool:
-        """Return whether a vacuum is on, which takes what the cup touches."""
+        """Return whether a vacuum is on, which grips any object that the cup touches."""
         is_on = self._controls[robot.name] == robot.model.gripper_closed
         return robot.model.gripper is GripperKind.SUCTION and is_on
 
     def _move_fingers(self, robot: Robot) -> None:
-        """Put sliding fingers of the catalog where they are commanded; the pads are on their joints."""
+        """Move sliding fingers of the catalog to their commanded positions; their joints carry the pads."""
         if finger_motion(robot.model).open_joints:
             return
         for pad in robot.pads:
@@ -172,7 +172,7 @@ class KinematicSimulation(Simulation):
                 self.data.qpos[self.model.jnt_qposadr[joint]] = min(high, max(low, self._controls[robot.name]))
 
     def _take(self, robot: Robot) -> None:
-        """Take the object in which the tool's centre point is, if there is one."""
+        """Take the object that contains the tool's centre point, if there is one."""
         place, turn = self.tool(robot)
         for name in self._movable:
             if any(held.name == name for held in self._taken.values()):
@@ -186,7 +186,7 @@ class KinematicSimulation(Simulation):
                 return
 
     def _contents(self, name: str) -> Iterator[_Held]:
-        """Yield the loose objects in the workspace of a part with a joint, in the frame of the part."""
+        """Yield the loose objects in the workspace of a part with a joint, with poses in the frame of the part."""
         model = self.world.cast.objects[name]
         if model.joint is None or model.region is None:
             return
@@ -209,7 +209,7 @@ class KinematicSimulation(Simulation):
             self._put(other.name, here + rotation @ other.position, rotation @ other.rotation)
 
     def _slide(self, name: str, wanted: FloatArray) -> None:
-        """Move the joint of a part so that the part comes as near as it can to a position (3,) m."""
+        """Move the joint of a part so that the part is as near as possible to a position (3,) m."""
         joint = self.model.joint(joint_of_part(name)).id
         address = int(self.model.jnt_qposadr[joint])
         axis, anchor = self.data.xaxis[joint], self.data.xanchor[joint]
@@ -242,7 +242,7 @@ class KinematicSimulation(Simulation):
         mujoco.mj_kinematics(self.model, self.data)
 
     def _height(self, name: str, start: FloatArray) -> float:
-        """Return the distance (m) from a point down to what is below it, without an object and the arms."""
+        """Return the distance (m) from a point down to the first surface, ignoring the object ``name`` and the arms."""
         own, geom = int(self.model.body(name).id), np.full(1, -1, dtype=np.int32)
         distance, here = 0.0, start.copy()
         while True:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 EVERY = 4
-"""Samples between two pictures: about 16 per second are enough for display; the exact trace has all samples."""
+"""One of this many samples is a picture: about 16 per second are enough; the exact trace has all samples."""
 PERIOD = 1 / 16
 """Seconds between two pictures of observations."""
 WORLD = "world"
@@ -64,7 +64,7 @@ def drawn_bodies(model: Any) -> dict[int, str]:
 def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]:
     """Yield the views of a trace of observations. ``model`` is a compiled model that has a body for each object.
 
-    An object is drawn where it was observed last; one that was never observed is left out.
+    An object is drawn where it was last observed; objects that were never observed are left out.
     """
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
@@ -91,7 +91,7 @@ def _is_seen(trace: Trace, name: str) -> bool:
 
 
 def _last_known(values: FloatArray) -> FloatArray:
-    """Replace each missing value (n, m, k) by the last one before it, or else by the first one after it."""
+    """Replace each missing value (n, m, k) by the last known value before it, or else by the first one after it."""
     missing = np.isnan(values).any(axis=2)
     rows = np.where(missing, -1, np.arange(len(values))[:, None])
     rows = np.maximum.accumulate(rows, axis=0)
@@ -101,7 +101,7 @@ def _last_known(values: FloatArray) -> FloatArray:
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
-    """Yield the verdicts, each at its instant, or at the trace's end (s) if it has none."""
+    """Yield the verdicts, each at its instant; a verdict without an instant is at the trace's end (s)."""
     clauses = {clause.line: clause for clause in spec.clauses}
     for one in judged:
         stated = clauses[one.line]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def read_mjcf(path: Path) -> Any:
     """Return the engine's editable description of an MJCF file. Raises ``ValueError`` and ``OSError``.
 
-    Unsaved texts replace the file and those that it includes.
+    Unsaved texts replace the file and the files that it includes.
     """
     included = [one for one in model_files(path, source_xml) if one != path and _is_mjcf(one)]
     if all(unsaved_source(one) is None for one in (path, *included)):

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 SPEED, TURNING = 0.5, 1.0
 """Largest speeds (m/s, rad/s) of a base whose file states none."""
 GRIP = 0.5
-"""Friction of wheels on the floor: share of the weight that a base without stated force limits can push with."""
+"""If a file states no force limit, the wheels of a base can push with this share of its weight (friction)."""
 LEVER = 0.2
-"""Half the distance (m) of the wheels of such a base: its largest torque is its largest force with this lever."""
+"""Without a torque limit in the file, the torque is this push at this lever (m): half the distance of the wheels."""
 FREQUENCY, RATIO = 20.0, 1.0
 """Natural frequency (rad/s) and damping ratio of the servos of a base."""
 
@@ -31,7 +31,8 @@ class MobileBase:
     """The base of an arm in its file: the names of two sliding joints and of the turning joint that they carry.
 
     ``speed`` (m/s) and ``turning`` (rad/s) are its largest speeds, ``force`` (N) and ``torque`` (N m) what its wheels
-    can exert. ``stated`` says whether all of these are from the file. ``gains``: stiffness and damping of each servo.
+    can exert. ``stated`` is whether all these limits are from the file. ``gains`` are each servo's stiffness and
+    damping.
     """
 
     joints: tuple[str, str, str]
@@ -44,7 +45,7 @@ class MobileBase:
 
 
 def read_base(model: Any, joint: str) -> MobileBase | None:
-    """Return the mobile base in an arm's compiled file whose first joint is named, ``None`` if the base is fixed."""
+    """Return the mobile base in an arm's compiled file that carries its first joint, ``None`` if the base is fixed."""
     found = planar_joints(model, int(model.joint(joint).id))
     if found is None:
         return None
@@ -112,7 +113,7 @@ class BaseState:
     """The joints of one mobile base in the engine's arrays of a compiled world.
 
     ``joints`` (3,) are indices of joint positions, ``motors`` (3,) of controls, ``targets`` (3,) of servo targets.
-    ``lead`` is the time (s) by which a target leads. ``start`` is the pose of the arm's frame with all joints at 0.
+    A target leads by the time ``lead`` (s). ``start`` is the pose of the arm's frame with all joints at 0.
     """
 
     def __init__(self, model: Any, name: str, base: MobileBase, start: Pose) -> None:

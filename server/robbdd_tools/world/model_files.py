@@ -1,4 +1,4 @@
-"""Find and read the model files named by an executable scene, and convert them for a simulated world."""
+"""Find and read the model files that an executable scene names, and convert them for a simulated world."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def load(source: ModelSource) -> Any:
     except (ValueError, OSError) as error:
         words = " ".join(str(error).split())  # the engine's messages have several lines
         raise SceneError(f"the model file {path} cannot be read: {words}", origin=source.origin) from error
-    # Links fixed to others keep their names: they may be the tool, or mapped to a body.
+    # Links fixed to others keep their names: the tool or a body of the scene may refer to them.
     spec.compiler.fusestatic = False
     return spec
 
@@ -81,7 +81,7 @@ def _read_made(path: Path) -> Any:
 
 
 def velocity_limits(source: ModelSource, joints: Sequence[str], default: float) -> tuple[float, ...]:
-    """Return the speed limits (rad/s, m/s) of joints in a URDF file; ``default`` where there is none."""
+    """Return the speed limits (rad/s, m/s) of joints in a URDF file, or ``default`` for a joint without a limit."""
     stated = speeds(path_of(source)) if source.kind in ("file", "ros") else {}
     return tuple(stated.get(joint) or default for joint in joints)
 
@@ -127,9 +127,9 @@ class MovingPart:
 class FromFile:
     """An object from its file; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file.
 
-    ``geoms`` are the names in the file of the model's shapes, in their order. ``parts`` are its moving parts, each
-    after the one that carries it. ``body`` and ``joint`` are the names in the file of its own body and of the joint on
-    which it moves, if it has one.
+    ``geoms`` are the names of the model's shapes in the file, in their order. ``parts`` are its moving parts, each
+    after the part that carries it. ``body`` and ``joint`` are the names of the object's body and of its joint, if any,
+    in the file.
     """
 
     model: ObjectModel
@@ -202,7 +202,7 @@ class _Rigid:
         self.inertia = inertia_in(model, data, own, body, self.shapes)
         self.names = tuple(str(model.geom(geom).name) for geom in self.geoms)
         bodies = [str(model.body(int(model.geom_bodyid[geom])).name) for geom in self.geoms]
-        # The name of the moving body itself is not that of one of its shapes.
+        # Skip the name of the moving body itself: it is no name of a shape.
         bodies = [
             name if number != body else "" for name, number in zip(bodies, model.geom_bodyid[self.geoms], strict=True)
         ]
@@ -210,7 +210,7 @@ class _Rigid:
         self.mass = float(sum(model.body_mass[index] for index in own))
 
     def _looking(self, model: Any, geom: int, shape: Shape) -> Shape:
-        """Return a shape with its own friction and colour where they differ from those of the first shape."""
+        """Return a shape with its own friction and colour if they differ from the first shape's."""
         friction, painted = float(model.geom_friction[geom, 0]), _color(model.geom_rgba[geom])
         return replace(
             shape,
@@ -264,10 +264,10 @@ def _body(model: Any, source: ModelSource, name: str) -> int:
 
 
 def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[int, tuple[Region, ...]]:
-    """Map the bodies of an object that move by themselves to the workspaces that are sites in the file.
+    """Map each moving body of an object to its workspaces, which are sites in the file.
 
-    An object with moving parts may have several: the part of a site's name before 'workspace' is the region's name,
-    unless there is only one site. An object without moving parts has only the first one.
+    An object with moving parts may have several workspaces: the part of a site's name before 'workspace' is the
+    region's name, unless there is only one site. An object without moving parts has only the first workspace.
     """
     found: list[tuple[int, Region]] = []
     for site in range(model.nsite):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 Velocity = tuple["FloatArray", "FloatArray"]
-"""Of the position (3,) m/s and of the rotation (3,) rad/s, world frame."""
+"""Velocity of the position (3,) m/s and of the rotation (3,) rad/s, world frame."""
 
 
 def velocity_of(model: Any, data: Any, body: str) -> Velocity:

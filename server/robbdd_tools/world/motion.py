@@ -1,6 +1,6 @@
 """Tool paths, and joint motions that follow them within the robot's limits.
 
-A tool pose is given in cylinder coordinates about the robot's base: no path then leads through the base, and a
+A tool pose is given in cylinder coordinates about the robot's base. So no path leads through the base, and a
 redundant arm turns with its first joint.
 """
 
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 ACCELERATION = 2.0
 """Largest acceleration of the tool along its path, m/s²."""
 TURNING = 2.0
-"""Largest rotation speed of the tool about the vertical, rad/s."""
+"""Largest speed of rotation of the tool about the vertical, rad/s."""
 MARGIN = 0.7
 """Share of a joint's speed limit that a motion may use; the servo needs the rest."""
 SPACING = 0.03
-"""Distance between the points of a path for which joint positions are computed, m."""
+"""Joint positions are computed for points of a path that are this far (m) apart."""
 PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774
 """Peaks of the minimum-jerk profile over unit distance and time."""
 BEND = 0.3
-"""Joint change (rad) between path points from which on a second search starts at the arm's current position."""
+"""If a joint changes by more (rad) between path points, a second search starts at the arm's current position."""
 JOINT_POINTS = 32
-"""Number of parts of a motion on which the joints move evenly."""
+"""A motion on which the joints move evenly is computed in this many parts."""
 SHORTEST = 0.1
 """Duration of the shortest motion, s."""
 
@@ -43,7 +43,7 @@ SHORTEST = 0.1
 class ToolPose:
     """The tool pointing down: distance from the base's axis (m), direction (rad), height above the base (m).
 
-    ``turn`` (rad) is the tool's rotation about the vertical relative to that direction.
+    ``turn`` (rad) is the tool's rotation about the vertical, relative to this direction.
     """
 
     radius: float
@@ -153,7 +153,7 @@ def _along(
     limits: FloatArray,
     speed: float,
 ) -> Motion:
-    """Return the motion through tool poses at equal distances; ``way`` is the length (m) and the turn (rad) of it."""
+    """Return the motion through tool poses at equal distances; ``way`` is its length (m) and its turn (rad)."""
     length, turn = way
     shares = np.linspace(0.0, 1.0, len(poses) + 1)
     points = [joints]
@@ -178,8 +178,8 @@ def _along(
 def _next(arm: Arm, present: FloatArray, ahead: FloatArray, pose: ToolPose) -> FloatArray:
     """Return joint positions at a pose near the current ones; raises ``Unreachable``.
 
-    At a joint limit the other joints must turn away, and the extrapolated start leads to another posture: the nearer
-    solution is taken.
+    At a joint limit, the other joints must compensate, and a search from the extrapolated start finds another posture.
+    So the nearer solution is taken.
     """
     found = arm.solve(ahead, *frame_of(pose))
     if np.abs(found - present).max() <= BEND:

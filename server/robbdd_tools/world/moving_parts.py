@@ -21,7 +21,7 @@ _KINDS: dict[int, Literal["slide", "hinge"]] = {
 
 
 HANDLES = ("handle", "knob", "grip")
-"""Words in the name of a shape, or of its body, that a gripper holds to open the thing."""
+"""A shape is a handle, held to open the thing, if its name or its body's name contains one of these words."""
 
 
 def is_free(model: Any, body: int) -> bool:
@@ -31,7 +31,7 @@ def is_free(model: Any, body: int) -> bool:
 
 
 def rigid_root(model: Any, body: int, root: int) -> int | None:
-    """Return the body that carries a body rigidly: ``root``, or one with a joint below it; ``None`` outside of it."""
+    """Return the body that carries a body rigidly: ``root`` or a jointed body below it; ``None`` outside ``root``."""
     found = body
     while found > 0 and found != root and not int(model.body_jntnum[found]):
         found = int(model.body_parentid[found])
@@ -42,14 +42,14 @@ def rigid_root(model: Any, body: int, root: int) -> int | None:
 
 
 def joint_bodies(model: Any, root: int) -> Iterator[int]:
-    """Yield the bodies below ``root`` that move relative to it, each after those that carry it."""
+    """Yield the bodies below ``root`` that move relative to it, each after the bodies that carry it."""
     for body in range(root + 1, model.nbody):
         if int(model.body_jntnum[body]) and rigid_root(model, body, root) == body:
             yield body
 
 
 def joint_of(model: Any, data: Any, body: int, parent: int, source: ModelSource) -> PassiveJoint:
-    """Return the joint of a body on ``parent``, by the name of the parent's body, 0 for the world.
+    """Return the joint that connects a body to the body with the number ``parent``, 0 for the world.
 
     Raises ``SceneError`` for a body with several joints or with a ball or free joint.
     """
@@ -85,7 +85,7 @@ def joint_of(model: Any, data: Any, body: int, parent: int, source: ModelSource)
 
 
 def handle_of(names: Iterable[str]) -> int | None:
-    """Return the number of the first shape whose name says that it is a handle, by the names of shapes and bodies."""
+    """Return the number of the first shape that is a handle, judged by the names of shapes and bodies."""
     return next((i for i, name in enumerate(names) if any(word in name.lower() for word in HANDLES)), None)
 
 
@@ -95,7 +95,7 @@ def name_of_body(model: Any, body: int) -> str:
 
 
 def joint_name(model: Any, body: int) -> str:
-    """Return the name in the file of a body's joint."""
+    """Return the name of a body's joint in the file."""
     return str(model.joint(int(model.body_jntadr[body])).name)
 
 
