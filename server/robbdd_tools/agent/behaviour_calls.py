@@ -1,4 +1,4 @@
-"""The behaviours of an execution as data: what is executed, in which order, and for how long."""
+"""The behaviours of an execution as data: calls, their order, and time limits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments
 
 TIMEOUT = 60.0
-"""Seconds of simulated time after which an execution is stopped."""
+"""An execution is stopped after this simulated time (s)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +20,9 @@ class Call:
     """A behaviour, by its catalog name, with the names in its slots.
 
     The place of a behaviour may be a set of workspaces. In a When with several behaviours, ``part`` distinguishes its
-    events from those of the others, ``is_meanwhile`` states whether it is executed at the same time as the call before
-    it, and ``awaited`` are the events (CURIEs) that must occur before it begins. ``iteration`` is the number of its
-    events' iteration; 0 for its own number in the sequence of calls.
+    events from those of the others, ``is_meanwhile`` states whether it is executed at the same time as the previous
+    call, and ``awaited`` are the events (CURIEs) that must occur before it begins. ``iteration`` is the iteration of
+    its events; if it is 0, this is the call's own number in the sequence of calls.
     """
 
     behaviour: str
@@ -55,7 +55,7 @@ class Call:
 class Choice:
     """An element that a behaviour chose from a set of places.
 
-    ``number`` is that of the call (from 1), and ``nodes`` are the nodes of a behaviour tree that it belongs to.
+    ``number`` is the number of the call (from 1), and ``nodes`` are the behaviour-tree nodes to which the call belongs.
     """
 
     number: int
@@ -67,8 +67,8 @@ class Choice:
 class Timing:
     """The times of an execution in simulated s.
 
-    They are the minimum idle time before the first behaviour, the time of recording after the scenario's end, and the
-    timeout. ``touching`` are the elements whose contact forces are recorded; a workspace means its objects.
+    They are the minimum idle time before the first behaviour, the recording time after the scenario's end, and the
+    timeout. The contact forces of the elements ``touching`` are recorded; a workspace means its objects.
     """
 
     lead: float = 0.5
@@ -80,7 +80,7 @@ class Timing:
 def groups_of(calls: Sequence[Call]) -> list[list[int]]:
     """Return the indices of the calls in groups that are executed one after the other.
 
-    The calls of a group are executed at the same time. Raises ``SceneError`` if an agent has two of them.
+    The calls of a group are executed at the same time. Raises ``SceneError`` if an agent has two calls in a group.
     """
     groups: list[list[int]] = []
     for index, call in enumerate(calls):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 PLACES = 1
-"""Separates the random stream for places from that of the scene, which starts from the same seed."""
+"""Number of the random stream for places: the stream of the scene starts from the same seed."""
 
 
 class BehaviourExecutors:
@@ -59,7 +59,7 @@ class BehaviourExecutors:
         return self._implementation is not None and self._implementation.is_users
 
     def introduce(self, fault: RobotFault, calls: Iterable[Call]) -> None:
-        """Let the robots have a fault from now on. Raises ``SceneError`` if it cannot occur in some behaviour."""
+        """Give the robots a fault from now on. Raises ``SceneError`` if it cannot occur in some behaviour."""
         for call in calls:
             with_swapped_element(call, fault, self._simulation)
         self._fault = fault
@@ -155,7 +155,7 @@ class BehaviourExecutors:
 
 
 def _at_pace(steps: Iterator[None], pace: float) -> Iterator[None]:
-    """Execute the steps of users' code with a multiple of their pace: twice in a tick, or every second tick."""
+    """Execute the steps of users' code at ``pace`` steps per tick: 2 is twice in a tick, 0.5 every second tick."""
     due = 0.0
     while True:
         due += pace

@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 START, END = "scenario-start", "scenario-end"
 """Emitters of the events that delimit a scenario."""
 REST = 1.0
-"""Seconds between the end of the last behaviour and the end of the scenario, in which objects come to rest."""
+"""Objects can come to rest for this time (s) between the end of the last behaviour and the end of the scenario."""
 LOOK = 16
-"""Control ticks after which an execution without events is examined again."""
+"""An execution without events is examined again after this many control ticks."""
 
 
 class BehaviourRun:
@@ -47,7 +47,7 @@ class BehaviourRun:
 
     - ``stamps``: the events emitted so far.
     - ``succeeded``: the indices of the behaviours in ``calls`` that have succeeded.
-    - ``failures``: the reasons of those that have failed.
+    - ``failures``: the reasons of the behaviours that have failed.
     - ``tree``: the behaviour tree, if one is executed.
     - ``remark``: the latest problem.
     - ``broken``: an error in the user's code or model that prevents any verdict.
@@ -57,7 +57,7 @@ class BehaviourRun:
     - ``begun``: the indices of the behaviours that have begun.
     - ``wall``: the wall time spent in s.
     - ``has_occurred``: returns whether an event that the template defines has occurred in an iteration.
-    - ``observers``: called after each sample, when the events of its time have been emitted, and at the end.
+    - ``observers``: called after each sample and its events, and at the end.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -169,7 +169,7 @@ class BehaviourRun:
                 return
 
     def _make_way(self, agents: Sequence[str]) -> Iterator[None]:
-        """Wait until the idle arms of other agents are out of the way of those that act next."""
+        """Wait until the idle arms of other agents are out of the way of the agents that act next."""
         self._idle_arms.park_all(agents)
         while self._idle_arms.move(self.simulation.ticks):
             yield
@@ -199,7 +199,7 @@ class BehaviourRun:
             yield
 
     def _when_due(self, index: int) -> Generator[None, None, str]:
-        """Wait for the events that a behaviour requires, and then for arms that make room; execute it."""
+        """Wait for the events that a behaviour requires, then for arms that make room; then execute it."""
         call = self._calls[index]
         while self._awaited(call) or (call.awaited and self._idle_arms.are_moving):
             yield
@@ -257,7 +257,7 @@ class BehaviourRun:
         return str(error)
 
     def attempt_next(self, call: Call) -> Generator[None, None, str]:
-        """Execute a behaviour of a behaviour tree when the arms of other agents that are idle have made room."""
+        """Execute a behaviour of a behaviour tree after the arms of other, idle agents have made room."""
         yield from self._make_way(call.agents)
         return (yield from self.attempt(call))
 

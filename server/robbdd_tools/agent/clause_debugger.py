@@ -43,7 +43,7 @@ class Pauses:
     """The pauses of a process that no debugger controls: there are none."""
 
     def take(self, line: str) -> bool:
-        """Accept an order if it is one of a debugger; return whether it is."""
+        """Accept a debugger's order; return false for any other order."""
         del line
         return False
 
@@ -56,7 +56,7 @@ class Pauses:
         """Watch the execution of scenario number ``index``, which has been set up."""
 
     def step(self, line: int) -> None:
-        """Note the step that is executed next: that of the clause on a feature line."""
+        """Note the step that is executed next: the step of the clause on a feature line."""
 
     def judged(self, message: ClauseJudged) -> None:
         """Note the verdict on a clause."""
@@ -95,7 +95,7 @@ class ClauseDebugger(Pauses):
         return self._waited
 
     def take(self, line: str) -> bool:
-        """Accept an order if it is one of a debugger; return whether it is."""
+        """Accept a debugger's order; return false for any other order."""
         try:
             order = decode_order(line)
         except ValueError as error:
@@ -112,11 +112,11 @@ class ClauseDebugger(Pauses):
         self._wait(scenario, Reason.ENTRY)
 
     def step(self, line: int) -> None:
-        """Note the step that is executed next: that of the clause on a feature line."""
+        """Note the step that is executed next: the step of the clause on a feature line."""
         self._line = line
 
     def judged(self, message: ClauseJudged) -> None:
-        """Note the verdict on a clause, and pause if this is a moment of the clause."""
+        """Note the verdict on a clause, and pause if the verdict is a moment of the clause."""
         scenario = self._scenario
         if scenario is None:
             return

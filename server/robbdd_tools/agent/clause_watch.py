@@ -45,9 +45,9 @@ class WatchedClauses:
 
 @dataclass(slots=True)
 class _Part:
-    """A fluent, its number in the clause, and the windows whose moments have been reported.
+    """A fluent, its number in the clause, and the windows with moments that have been reported.
 
-    ``some_time``: one sample decides the clause in its favour, instead of one sample against it.
+    If ``some_time`` is true, one sample can satisfy the clause; otherwise, one sample can violate it.
     """
 
     line: int
@@ -100,7 +100,7 @@ class ClauseWatch:
                     yield Hit(line, 0, moment)
 
     def judged(self, line: int, *, violated: bool) -> Iterator[Hit]:
-        """Yield the moments that only the verdict on a clause shows, because Python code judges the clause."""
+        """Yield the moments of a clause that Python code judges: only the verdict shows them."""
         parts = [part for part in self._parts if part.line == line]
         for part in parts:
             if violated and not part.is_measured:
@@ -132,7 +132,7 @@ class ClauseWatch:
         return found
 
     def curves(self) -> dict[int, list[dict[str, Any]]]:
-        """Return the margins so far over time, as data, by feature line; a window that is open ends now."""
+        """Return the margins so far over time, as data, by feature line; open windows end now."""
         trace = self._execution.trace
         found: dict[int, list[dict[str, Any]]] = {}
         for part in self._parts:
@@ -171,7 +171,7 @@ class ClauseWatch:
         state = PartState(part.iri, some_time=part.some_time)
         if not windows:
             return state
-        # Of the windows of every occurrence, the last one is shown.
+        # If there is a window for each occurrence, the last one is shown.
         rows, closed = windows[-1].rows, windows[-1].closed
         times = trace.times[rows.first : rows.last + 1]
         state = replace(state, opened=float(times[0]), closed=float(times[-1]) if closed else None)
@@ -229,7 +229,7 @@ class ClauseWatch:
 
 
 def _parts(line: int, clause: Clause, known: ClauseSpec | None) -> Iterator[_Part]:
-    """Yield the fluents of a clause. They are numbered in the order of the sentence, together with its texts."""
+    """Yield the fluents of a clause. Fluents and texts have common numbers, in the order of the sentence."""
     iris = () if known is None else known.parts or (known.iri,)
     for number, (leaf, negated) in enumerate(_signed(clause)):
         if isinstance(leaf, Fluent) and leaf.predicate.evaluate is not None:

@@ -80,7 +80,7 @@ def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
 def _first(
     ours: FloatArray, theirs: FloatArray, quantity: str, labels: tuple[tuple[str, ...], ...]
 ) -> _Divergence | None:
-    """Return the first position at which the bits of two arrays differ. The longer array is cut."""
+    """Return the first position at which the bits of two arrays differ, up to the length of the shorter array."""
     rows = min(len(ours), len(theirs))
     bits = [np.ascontiguousarray(values[:rows]).view(np.uint64) for values in (ours, theirs)]
     places = np.argwhere(bits[0] != bits[1])

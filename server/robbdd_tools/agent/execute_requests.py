@@ -10,11 +10,11 @@ from time import sleep
 from typing import TextIO
 
 PAUSE = 0.2
-"""Seconds between two checks that the parent process is alive, after it has closed the stream."""
+"""After the parent process has closed the stream, this process checks at this interval (s) that it is alive."""
 
 
 def read_requests(stream: TextIO, is_taken: Callable[[str], bool] = lambda _: False) -> Iterator[str]:
-    """Yield the lines of a stream as they arrive, except those that ``is_taken`` has taken, in the reading thread.
+    """Yield the lines of a stream as they arrive, except those that ``is_taken`` takes in the reading thread.
 
     When the stream ends and the parent process is gone, this process exits immediately, even while it executes a
     scenario. If the parent is alive, all orders are completed.

@@ -151,7 +151,7 @@ class Execution:
         return self.complete(trace)
 
     def complete(self, trace: Trace) -> Trace:
-        """Return a trace to which all data except its samples has been added."""
+        """Return a trace with all data added to its samples."""
         size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
         touches = self.simulation.touches
         return replace(

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @cache
 def feature_wording(feature: Path) -> int:
-    """Return the version of the sentences of a feature file, which behave has read before. Raises ``OSError``."""
+    """Return the version of the sentences of a feature file that behave has already read. Raises ``OSError``."""
     return wording_of(load_text(feature, RESULT_SIZE))
 
 
 def remarks_on_wording(edited: Iterable[str], wording: int) -> Iterator[str]:
     """Yield a remark on each edited sentence that only the first version of the wording understands.
 
-    ``wording`` is the version of the sentences' feature.
+    ``wording`` is the version of the feature.
     """
     for text in edited:
         found = AMBIGUOUS.search(text)

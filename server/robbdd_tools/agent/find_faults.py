@@ -47,7 +47,7 @@ def kind_of(error: SceneError) -> FaultKind:
 def answer_instances(answer: Callable[[list[SceneInstance]], list[dict[str, Any]]]) -> None:
     """Answer the scene instances on standard input, with limited memory and processor time."""
     requests, answers = reserve_channel()
-    # An opened folder may contain a model that demands any amount of either.
+    # A model in an opened folder may demand any amount of memory or time.
     limit_memory(SCENE_MEMORY.value())
     limit_processor_time(SCENE_SECONDS.value())
     # Nothing is rendered: a broken graphics back end must not prevent loading the engine.

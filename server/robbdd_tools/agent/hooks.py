@@ -18,7 +18,7 @@ from robbdd_tools.user_code.calls import fault_of
 
 __all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario", "before_step"]
 EXECUTION = "robbdd.execution"
-"""Key of behave's user data for the manifest's scenario number: several may share a feature's scenario."""
+"""Key of behave's user data for the number in the manifest: several executions may share a feature's scenario."""
 
 
 def before_all(context: Any) -> None:

@@ -1,4 +1,4 @@
-"""Arms that are not needed wait where they are out of the way of the others."""
+"""Move idle arms out of the way of the others, where they wait."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 class IdleArms:
     """The arms of some agents that are idle before or after their behaviours.
 
-    ``park`` returns the motion of an agent's arm to where it waits, one control tick for each step.
+    ``park`` returns the motion of an agent's arm to its waiting place, one control tick for each step.
     """
 
     def __init__(self, agents: Iterable[str], park: Callable[[str], Iterator[None]]) -> None:
@@ -33,15 +33,15 @@ class IdleArms:
         self._idle |= dict.fromkeys(agents)
 
     def park_all(self, needed: Collection[str] = ()) -> None:
-        """Let the idle arms make room, except for those of the agents ``needed`` next."""
+        """Let the idle arms make room, except the arms of the agents ``needed`` next."""
         for agent in [agent for agent in self._idle if agent not in needed]:
             del self._idle[agent]
             self._moving[agent] = self._park(agent)
 
     def move(self, tick: int) -> bool:
-        """Move the arms that make room in a control tick; return whether one has not arrived.
+        """Move the arms that make room for one control tick; return whether some arm has not arrived.
 
-        Several calls in the same tick move them once.
+        Further calls in the same tick move nothing.
         """
         if tick != self._last:
             self._last = tick

@@ -133,7 +133,7 @@ def _follow(
     contents = LogContents({})
     for contents in growing_contents(request):
         with suppress(RobbddError, SceneError):
-            # Until its first message, a topic that the user names is not there.
+            # A topic that the user names does not exist before its first message.
             evidence = evidence_of(spec, _completed(contents, request, spec), request).evidence
             for clause in spec.clauses:
                 if clause.line not in early and is_decided(clause, spec, evidence.trace):

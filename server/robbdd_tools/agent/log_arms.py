@@ -1,4 +1,4 @@
-"""Arms whose joints a log reports: poses of their tools, and distances from the limits of their joints."""
+"""Compute tool poses and distances from joint limits of the arms whose joints a log reports."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.scene import Cast
 
 IMPOSSIBLE = np.pi
-"""Distance (rad) beyond a limit from which positions are in another unit: no arm turns half a turn past its stop."""
+"""Positions farther (rad) beyond a limit are in another unit: no arm turns half a turn past its stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class LoggedArm:
         return places, turns
 
     def clearance(self, positions: FloatArray) -> FloatArray | None:
-        """Return the smallest distance of a joint from a limit, as a share of its range, shape (n,).
+        """Return the smallest distance of the arm's joints from a limit, as a share of the joint's range, shape (n,).
 
         It is NaN where a joint was not observed. Returns ``None`` for an arm without limited joints.
         """
@@ -75,8 +75,8 @@ class LoggedArm:
 def find_arms(cast: Cast, contents: LogContents, request: LogRequest, remarks: list[str]) -> dict[str, LoggedArm]:
     """Return the arms of a scene whose joints a log reports, by agent.
 
-    ``remarks`` gets a sentence on each arm whose joints are not known: why, and what to write. Raises ``NoElement`` if
-    the request names an agent or a joint that does not exist.
+    For each arm whose joints are not known, ``remarks`` gets a sentence with the reason and the fix. Raises
+    ``NoElement`` if the request names an agent or a joint that does not exist.
     """
     topics = elements_of(request.joint_topics, cast.agents)
     known = {word for name, one in cast.agents.items() for joint in one.joints for word in joint_words(name, joint)}
@@ -110,7 +110,7 @@ def _find_arm(
 
 
 def _wrong_unit(found: LoggedArm) -> str:
-    """Return the reason if positions are so far beyond the limits that they cannot be in rad; else an empty text."""
+    """Return the reason if positions are too far beyond the limits to be in rad; else an empty text."""
     rows = zip(found.names, found.tracks, found.arm.lower, found.arm.upper, found.arm.limited, strict=True)
     for name, track, lower, upper, limited in rows:
         beyond = max(lower - float(track.positions.min()), float(track.positions.max()) - upper)

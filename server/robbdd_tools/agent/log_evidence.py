@@ -40,7 +40,7 @@ START, END = "scenario-start", "scenario-end"
 
 @dataclass(frozen=True, slots=True)
 class LogEvidence:
-    """The evidence of a log on one scenario, and sentences on what is missing or was assumed."""
+    """The evidence of a log on one scenario, and sentences about missing data and assumptions."""
 
     evidence: Evidence
     remarks: tuple[str, ...]
@@ -50,10 +50,10 @@ class LogEvidence:
 def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) -> LogEvidence:
     """Return the evidence of a log on a scenario.
 
-    Positions are those of the log in the frame of the world; the origin of a frame is that of the element's model. The
-    trace has a sample at each observation of a frame that is used, at most ``request.rate`` per second, at each event
-    and in each gap. A value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model, and
-    ``NoElement`` or ``NoGripSignal`` if the request names something else.
+    Positions are in the frame of the world; the origin of a frame is the origin of the element's model. The trace has a
+    sample at each observation of a used frame (at most ``request.rate`` per second), at each event and in each gap. A
+    value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model, and ``NoElement`` or
+    ``NoGripSignal`` if the request names something that does not exist.
     """
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
     cast = cast_scene(spec.scene, staging)
@@ -100,9 +100,9 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 
 
 def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
-    """Return the events of a scenario in a log. Without a report, it starts and ends with the log.
+    """Return the events of a scenario in a log. If the log does not report its start and end, they are the log's.
 
-    The end of a log whose recording was interrupted is not that of the scenario.
+    If the recording was interrupted, the end of the log is not the end of the scenario.
     """
     stamps: list[EventStamp] = []
     iterations = {**_awaited(spec), **iterations_of_events(spec)}
@@ -156,7 +156,7 @@ def _times(
     reported = [found.times for found in contents.truths.values()]
     edges = [*(stamp.time for stamp in events), 0.0, contents.end]
     times = np.unique(np.concatenate([kept, *reported, edges]))
-    # Poses just outside of a period only serve to interpolate those in it.
+    # Poses just outside a period only serve to interpolate poses in it.
     times = times[(times >= 0.0) & (times <= contents.end)]
     # Without a sample in a gap, a clause would be judged across it.
     long = np.diff(times) > request.max_gap

@@ -1,4 +1,4 @@
-"""Judge the clauses of a log that is still recorded, each when its window has closed."""
+"""Judge the clauses of a log during its recording, each when its window has closed."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 LATE = 1.0
-"""Seconds after the end of a window until which its messages may still arrive."""
+"""Messages of a window may arrive up to this time (s) after its end."""
 OWN_EVALUATORS = "robbdd_tools.catalog."
 PERIOD = 0.25
-"""Seconds between two looks at the file."""
+"""The file is read again after this time (s)."""
 
 
 def growing_contents(request: LogRequest) -> Iterator[LogContents]:
-    """Yield the contents of a log whenever it has grown, and at last those of the whole log.
+    """Yield the contents of a log whenever it has grown, and finally the contents of the whole log.
 
-    The log ends when the recorder has closed its file, or has written nothing for ``request.quiet`` seconds. Raises
-    ``UnreadableLog``, also for a log that is no MCAP file.
+    The log ends when the recorder has closed its file or has written nothing for ``request.quiet`` seconds. Raises
+    ``UnreadableLog``, also if the log is no MCAP file.
     """
     path = _file(Path(request.path))
     log = GrowingMcap(path, request.clocks, tuple(map(read_event_signal, request.signals)))
@@ -55,8 +55,8 @@ def growing_contents(request: LogRequest) -> Iterator[LogContents]:
 def is_decided(known: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> bool:
     """Return whether nothing that is recorded later can change the verdict of a clause.
 
-    A clause on all occurrences of an event, or on the last one, is decided at the end of the log only; so are a
-    behaviour, and a clause that an observation policy judges.
+    Only the end of the log decides a behaviour, a clause on all occurrences of an event or on the last one, and a
+    clause that an observation policy judges.
     """
     statement = statement_of(known)
     if isinstance(statement, EventOccurrence):
@@ -69,7 +69,7 @@ def is_decided(known: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> bool:
 
 
 def _is_ours(fluent: Fluent) -> bool:
-    """Return whether only this package's evaluators judge a fluent: users' code is called once only."""
+    """Return whether only this package's evaluators judge a fluent: users' code must be called only once."""
     conditions = () if fluent.condition is None else (fluent.condition.predicate,)
     evaluators = [one.evaluate for one in (fluent.predicate, *conditions)]
     return all(getattr(one, "__module__", "").startswith(OWN_EVALUATORS) for one in evaluators)

@@ -43,9 +43,9 @@ CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
 class Frames:
-    """The frames of a scenario's elements in a log, and their poses. ``remarks`` gets sentences on what is missing.
+    """The frames of a scenario's elements in a log, and their poses. ``remarks`` gets sentences about missing data.
 
-    ``jointed`` are the agents whose joints the log reports: the tools of those without a frame follow from them.
+    ``jointed`` are the agents whose joints the log reports: if the tool has no frame, its poses follow from the joints.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Frames:
         self._max_gap = request.max_gap
         self._remarks = remarks
         self.of: dict[str, str] = {}
-        """Element → its frame."""
+        """Frame of each element."""
         stated = {**stated_frames(spec), **elements_of(request.frames, (*cast.objects, *cast.agents))}
         problems: dict[str, str] = {}
         for element in (*cast.objects, *cast.agents):
@@ -85,7 +85,7 @@ class Frames:
         self._anchor()
 
     def observed(self) -> list[FloatArray]:
-        """Return the times (s) of the moving frames of elements and bases, and of those up to their roots."""
+        """Return the times (s) of the moving frames of elements and bases, and of all frames up to their roots."""
         found: set[str] = set()
         for frame in (*self.of.values(), *self._bases.values()):
             while frame in self._tracks and frame not in found:
@@ -98,9 +98,9 @@ class Frames:
         return self._poses(self.of[element], times) if element in self.of else None
 
     def base_poses(self, agent: str, times: FloatArray) -> Poses | None:
-        """Return the poses of an agent's base: of its frame in the log, or else of the ``.scenex``; ``None`` without.
+        """Return the poses of an agent's base, from the log or else from the ``.scenex``; ``None`` if both have none.
 
-        A remark says which one was used.
+        A remark states which of them was used.
         """
         frame = self._bases.get(agent)
         if frame is not None and (found := self._poses(frame, times)) is not None:
@@ -118,7 +118,7 @@ class Frames:
         return _fixed(pose, len(times))
 
     def object_poses(self, element: str, times: FloatArray) -> Poses | None:
-        """Return the poses of an object's centre: in the log or, if it is not there, in the ``.scenex``."""
+        """Return the poses of an object's centre, from the log or else from the ``.scenex``."""
         if element in self.of:
             found = self.poses(element, times)
             if found is None:
@@ -142,9 +142,9 @@ class Frames:
             return None
 
     def _base_frames(self, stated: Mapping[str, str], asked: Collection[str]) -> dict[str, str]:
-        """Return the frames of the bases: the stated ones, and those with the names that drivers of an arm use.
+        """Return the frames of the bases: stated frames, and frames with the names that drivers of an arm use.
 
-        A remark names each one of ``asked`` that cannot be found.
+        A remark names each agent of ``asked`` for which no base is found.
         """
         frames = {*self._tracks, *(track.parent for track in self._tracks.values())}
         found: dict[str, str] = {}
@@ -166,25 +166,25 @@ class Frames:
             return None
 
     def _stated_pose(self, element: str, pose_of: Callable[[Cast, str], Pose | None]) -> Pose | None:
-        """Return the pose of an element that the ``.scenex`` states; ``None`` if it states none, or draws it."""
+        """Return the pose of an element in the ``.scenex``; ``None`` if it states none or samples the pose."""
         if self._spec.instance is None:
             return None
-        # A pose that is drawn at random differs with another seed.
+        # A sampled pose differs with another seed.
         other = replace(self._cast, staging=Staging(self._spec.instance, self._spec.seed + 1))
         pose = pose_of(self._cast, element)
         return pose if pose == pose_of(other, element) else None
 
     def _is_world(self) -> bool:
-        """Return whether the frame in which poses are given is that of the ``.scenex``: by its name, or by the user.
+        """Return whether poses are given in the world of the ``.scenex``, by its name or by the user.
 
-        Without any frame in the log, it is.
+        This is also true if the log has no frame.
         """
         anchor = "" if self._spec.instance is None else self._spec.instance.anchor
         names = {WORLD, "map", local_name(anchor)}
         return self._stated_world or not self._world or local_name(self._world).casefold() in names
 
     def _root(self) -> str:
-        """Return the frame without a parent that the frames have in common: of elements or, without any, of bases."""
+        """Return the common root of the frames of elements or, if there are none, of bases."""
         roots: dict[str, str] = {}
         for frame in self.of.values() or self._bases.values():
             try:
@@ -197,7 +197,7 @@ class Frames:
         return next(iter(roots), "")
 
     def _anchor(self) -> None:
-        """Place a log without a frame of the world in that of the ``.scenex``, by the base of an arm."""
+        """Use the base of an arm to place a log without a frame of the world in the world of the ``.scenex``."""
         if self._is_world() or self._world in self._tracks:
             return
         for agent, frame in self._bases.items():
@@ -230,7 +230,7 @@ class Frames:
 
 
 def _tilts(cast: Cast, agent: str, count: int) -> FloatArray:
-    """Return the rotation of an agent's base from its upright one ``count`` times, quaternions, shape (count, 4)."""
+    """Return the rotation of an agent's base relative to its upright base, repeated, quaternions, shape (count, 4)."""
     return np.tile(cast.agents[agent].tilt, (count, 1))
 
 

@@ -1,4 +1,4 @@
-"""The grips of agents in a log: its reports, or declared signals. Unobserved grips are NaN."""
+"""Read the grips of agents from a log: from its reports, or from declared signals. Unobserved grips are NaN."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from robbdd_tools.world.scene import Cast
 
 HOLDS = "holds"
-"""Last part of the topic with the name of the object that an agent holds, or with an empty text: ``/panda/holds``."""
+"""Last part of the topic that reports the name of the object an agent holds, or an empty text: ``/panda/holds``."""
 NEAR = 0.03
-"""Room (m) between the tool and the surface of an object that it holds: errors of cameras and calibrations."""
+"""A tool may be this far (m) from the surface of an object that it holds: cameras and calibrations have errors."""
 
 
 def grip_signals(declared: Iterable[str], cast: Cast) -> tuple[GripSignal, ...]:
@@ -45,7 +45,7 @@ class LogGrips:
         self._max_gap = max_gap
 
     def observed(self, signals: Sequence[GripSignal]) -> list[FloatArray]:
-        """Return the times (s) of the messages that the signals are judged by. Raises ``NoGripSignal``."""
+        """Return the times (s) of the messages by which the signals are judged. Raises ``NoGripSignal``."""
         return [self._track(one).times for one in signals if one.kind != "topic"]
 
     def held(
@@ -55,10 +55,10 @@ class LogGrips:
         times: FloatArray,
         poses: Mapping[str, tuple[FloatArray, FloatArray]],
     ) -> dict[str, FloatArray]:
-        """Return what each agent holds at ``times`` (n,), (n, len(names)), for the agents about which it is known.
+        """Return, for each agent with known grips, what it holds at ``times`` (n,), shape (n, len(names)).
 
-        All signals of an agent must agree that it holds something. Signals for an object are about this object. For
-        other ones, it is the object at whose surface the tool is; if there are several, it is unknown which one.
+        All signals of an agent must agree that it holds something. A signal may name its object. Otherwise, the object
+        is the one at whose surface the tool is; if there are several, it is unknown which one.
         """
         found: dict[str, FloatArray] = {}
         for agent in self._cast.agents:
@@ -84,7 +84,7 @@ class LogGrips:
                 record[:, names.index(held)] = truth
                 continue
             near = self._near(agent, names, poses, len(times))
-            # A candidate is held if it is the only one; a place that is not known may be that of the held object.
+            # A candidate is held if it is the only one; an object at an unknown place may be the held one.
             several = np.nansum(near, axis=1) + np.isnan(near).sum(axis=1) > 1
             near[several[:, None] & (near > 0)] = np.nan
             on, unknown = truth[:, None] > 0, np.isnan(truth)[:, None]
@@ -109,7 +109,7 @@ class LogGrips:
         return near
 
     def _truth(self, signal: GripSignal, times: FloatArray) -> FloatArray:
-        """Return 1 where a signal says that something is held, 0 where not, NaN where it says nothing, (n,)."""
+        """Return 1 where a signal reports a grip, 0 where it reports none, NaN where it is unknown, (n,)."""
         if signal.kind == "topic":
             truths = self._contents.truths.get(signal.source)
             if truths is None:
@@ -125,7 +125,7 @@ class LogGrips:
         return np.where(np.isnan(values), np.nan, within)
 
     def _track(self, signal: GripSignal) -> JointTrack:
-        """Return the numbers of a signal. Raises ``NoGripSignal`` with what the log has."""
+        """Return the numbers of a signal. Raises ``NoGripSignal`` with the signals that the log has."""
         if signal.kind == "wrench":
             if signal.source not in self._contents.forces:
                 words = f"the log has no wrenches on '{signal.source}'{_listed(self._contents.forces)}"
@@ -143,7 +143,7 @@ class LogGrips:
         return JointTrack(track.times[known], np.abs(track.efforts[known]), track.efforts[known])
 
     def _reported(self, agent: str, names: Sequence[str], times: FloatArray) -> FloatArray:
-        """Return what the texts of an agent say."""
+        """Return the grips that the texts of an agent report."""
         own = [one for one in self._contents.texts if _is_of(one, agent)]
         known = {word: name for name in names for word in (name, local_name(name), self._frames.get(name, name))}
         record = np.zeros((len(times), len(names)))

@@ -28,7 +28,7 @@ class OnDemandQuantities:
         self._gaps = GapSampler(simulation)
 
     def measure(self, clause: Clause, trace: Trace, rows: range | None = None) -> None:
-        """Measure the quantities of a clause at the samples ``rows``; without them in the windows of its fluents."""
+        """Measure the quantities of a clause at the samples ``rows``, or else in the windows of its fluents."""
         cast = self._simulation.world.cast
         for fluent, one in fluents_with_quantity(clause, "reach"):
             if one["agent"] in self._simulation.robots and one["object"] in cast.objects:
@@ -45,7 +45,7 @@ class OnDemandQuantities:
 
 
 def _ranges(constraint: TimeConstraint, trace: Trace) -> Iterator[range]:
-    """Yield the samples of each window of a constraint, or of its recorded part if the rest is missing."""
+    """Yield the samples of each window of a constraint, or of the recorded part of the window."""
     constraints = [constraint]
     if not isinstance(constraint, During) and constraint.which == "every" and not constraint.number:
         times = occurrence_times(constraint, trace)

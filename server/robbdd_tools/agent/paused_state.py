@@ -32,7 +32,7 @@ def paused_state(
 ) -> Paused:
     """Return the state of scenario number ``index`` at its last sample.
 
-    ``verdicts`` are those so far by feature line. The other arguments are as in ``Paused``.
+    ``verdicts`` are the verdicts so far, by feature line. The other arguments are as in ``Paused``.
     """
     trace, simulation = execution.trace, execution.simulation
     states = watch.states()
@@ -82,7 +82,7 @@ def _regions(execution: Execution, bodies: Mapping[str, BodyState]) -> Iterator[
 
 
 def _contacts(simulation: Simulation) -> tuple[tuple[str, str], ...]:
-    """Return the pairs of elements that touch, in alphabetical order; neither parts of one element nor the room."""
+    """Return the pairs of elements that touch, in alphabetical order, without parts of one element and the room."""
     data = simulation.data
     owners = geom_owners(simulation.model, simulation.robots)
     elements = {*simulation.world.cast.objects, *simulation.robots}

@@ -158,7 +158,7 @@ def decided_on_trace(
     """Return the verdict of a stored trace on a clause that is not a behaviour.
 
     ``recorded`` are the events of the stored execution with their emitters, as ``events`` of its scenario. ``spec`` is
-    the edited scenario. Its ``seed`` must be that of the execution, because noise of observations follows from it.
+    the edited scenario. It must have the ``seed`` of the execution, which determines the noise of observations.
     """
     trace, statement = evidence.trace, statement_of(clause)
     if isinstance(statement, EventOccurrence):

@@ -40,7 +40,7 @@ USAGE = (
 SMALL = (300, 188)
 """Width and height of a thumbnail, pixels."""
 COARSE = np.uint8(0xFC)
-"""Colour bits kept in a thumbnail, which is sent within a text of some ten thousand characters."""
+"""Mask of the colour bits that a thumbnail keeps: it is sent within a text of some ten thousand characters."""
 
 
 def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) -> int:

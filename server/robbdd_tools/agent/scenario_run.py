@@ -219,7 +219,7 @@ class ScenarioRun:
     def finish(self) -> None:
         """Report the scenario as finished.
 
-        Before, probes and texts that have a policy or say a predicate's phrase are judged. Open clauses are unknown.
+        First judge probes, and texts with a policy or with the words of a predicate's phrase. Open clauses are unknown.
         """
         for line, sentence in list(self._open.items()):
             # behave has no step for such a text, nor for a probe.

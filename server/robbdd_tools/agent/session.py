@@ -25,7 +25,7 @@ UNKNOWN_SCENARIO = "the manifest of this run has no such scenario; was the featu
 class Session:
     """A run. It finds the scenario that behave is executing in the manifest.
 
-    ``sources`` maps the absolute path of each copied file of users' steps to that of the original.
+    ``sources`` maps the absolute path of each copied file of users' steps to the path of the original.
     """
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 LEAD = 0.5
-"""Minimum seconds between the scenario's start and its first behaviour."""
+"""Minimum time (s) between the scenario's start and its first behaviour."""
 KEPT = 8
-"""Number of courses kept for further scenarios. A dropped course is simulated again, bit-identical."""
+"""This many courses are kept for further scenarios. A dropped course is simulated again, bit-identical."""
 
 
 class SharedExecutions:
@@ -34,7 +34,7 @@ class SharedExecutions:
         """Elements already reported as left out."""
 
     def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> BehaviourRun:
-        """Return the ``BehaviourRun`` of a scenario, which is new unless the scenario shares it.
+        """Return the ``BehaviourRun`` of a scenario, a new one unless the scenario shares an earlier one.
 
         Raises ``SceneError``.
         """
@@ -48,7 +48,7 @@ class SharedExecutions:
 
 
 def calls_of(spec: ScenarioSpec) -> list[Call]:
-    """Return the behaviours of a scenario or, if it has one, those of its behaviour tree whose arguments are known.
+    """Return the behaviours of a scenario or, if it has a behaviour tree, the tree's behaviours with known arguments.
 
     Raises the ``SceneError`` of ``call_of``.
     """
@@ -60,7 +60,7 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
 def calls_in_order(steps: Iterable[tuple[Statement | None, ClauseSpec | None]]) -> list[Call]:
     """Return the behaviours among the steps of a scenario, each with the events that it awaits.
 
-    A step has its clause, unless a person added it. In a When with one behaviour, events are not awaited but observed.
+    A step has a clause, unless a person added the step. In a When with one behaviour, events are observed, not awaited.
     Raises ``SceneError``.
     """
     found: list[Call] = []
@@ -99,7 +99,7 @@ def call_of(call: BehaviourCall) -> Call:
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
     """Return times that leave room for the windows of all clauses of the scenario or of its behaviour tree.
 
-    Scenarios that share an execution record the contact forces that the clauses of the first one need.
+    Scenarios that share an execution record the contact forces that the clauses of the first scenario need.
     """
     clauses = (*clauses, *(condition for event in spec.defined for condition in event.conditions))
     lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)

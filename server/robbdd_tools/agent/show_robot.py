@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FAILED, NO_GRAPHICS = 2, 3
 NAME = "view:arm"
-"""Name of the agent in the world that is shown."""
+"""Name of the agent in the displayed world."""
 
 
 def show(arm: str, output: str) -> int:

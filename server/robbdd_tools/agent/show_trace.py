@@ -42,7 +42,7 @@ def show(path: Path) -> dict[str, Any]:
 def shown(seen: Mapping[str, Sequence[tuple[float, Any]]], trace: Trace | None = None) -> dict[str, Any]:
     """Return the views of an execution (time in s and message, by topic) in the form in which they are displayed.
 
-    Tools and forces are those of its ``trace``; without one, there are none.
+    Tools and forces are from its ``trace``; without a trace, there are none.
     """
     transforms = [message["transforms"] for _, message in seen["/tf"]]
     geometry = seen["/geometry"][0][1]
@@ -90,9 +90,9 @@ def _tool(trace: Trace, agent: str) -> FloatArray:
 
 
 def _forces(trace: Trace, rows: NDArray[np.intp], numbers: Mapping[str, int]) -> list[dict[str, Any]]:
-    """Return the contact forces between elements, as the largest since the picture before: none is left out.
+    """Return the contact forces between elements: at each picture, the largest force since the previous picture.
 
-    ``rows`` (k,) are the samples of the pictures. The last picture also has the forces after it.
+    So no force is left out. ``rows`` (k,) are the samples of the pictures; the last one also has the forces after it.
     """
     starts = [0, *(row + 1 for row in rows[:-1])]
     found: dict[tuple[str, str], FloatArray] = {}

@@ -25,7 +25,7 @@ def with_swapped_element(call: Call, fault: RobotFault, simulation: Simulation) 
         return _with(call, "object", others, "loose object")
     if fault.name == "swapped-goal" and "workspace" in call.arguments:
         walled = {name for name, found in cast.regions.items() if any(region.walled for _, region in found)}
-        # A bin is confused with another bin rather than with the table below it.
+        # Confuse a bin with another bin rather than with the table below it.
         alike = walled.intersection(call.places)
         others = sorted(cast.regions, key=lambda name: (bool(alike) != (name in walled), name))
         return _with(call, "workspace", others, "workspace")

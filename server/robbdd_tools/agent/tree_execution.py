@@ -71,7 +71,7 @@ class TreeRun:
         return self._nodes[node].id in self._begun
 
     def is_over(self, node: str) -> bool:
-        """Return whether a node has ended finally. A node that the tree may execute again ends with the tree."""
+        """Return whether a node has ended for good. A node that the tree may execute again ends with the tree."""
         return self._is_over or (self.has_succeeded(node) and self._nodes[node].id not in self._repeatable)
 
     def has_succeeded(self, node: str) -> bool:
@@ -96,7 +96,7 @@ class TreeRun:
         return frozenset(found)
 
     def failure(self, node: str) -> str:
-        """Return why a node failed, which is the reason of its last failed descendant; empty if none failed."""
+        """Return why a node failed: the reason of its last failed descendant, or an empty text if none failed."""
         return self._failure(self._nodes[node])[1]
 
     def unreached(self, node: str, remark: str) -> str:
@@ -193,11 +193,11 @@ class _Leaf(Behaviour):
 
     @property
     def events(self) -> tuple[str, ...]:
-        """The events of the behaviour that it executes."""
+        """The events of the leaf's behaviour."""
         return _events_of(self._node)
 
     def initialise(self) -> None:
-        """Start the behaviour anew."""
+        """Start the behaviour again."""
         self._steps = self._run(self, self._node)
 
     def update(self) -> Status:
@@ -217,14 +217,14 @@ def _events_of(node: NodeSpec) -> tuple[str, ...]:
 def _may_repeat(behaviour: Behaviour) -> bool:
     """Return whether the tree may execute a behaviour again.
 
-    It may not if all composites above the behaviour are sequences and selectors with memory.
+    This is not so if all composites above the behaviour are sequences and selectors with memory.
     """
     above = islice(_upwards(behaviour), 1, None)
     return not all(type(one) in COMPOSITES.values() and cast("Sequence | Selector", one).memory for one in above)
 
 
 def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
-    """Return the tree that the user's function builds from leaves. Raises ``SceneError``."""
+    """Return the tree that the user's function creates from leaves. Raises ``SceneError``."""
     source = spec.source
     assert source is not None
     place, model = at(source.origin), "" if source.origin is None else source.origin.file

@@ -19,7 +19,7 @@ FOLDER = "moments"
 
 @dataclass(frozen=True, slots=True)
 class ViolationState:
-    """A violation: the number of the scenario, the feature line of the clause, the time (s) and the joint positions."""
+    """A violation: number of the scenario, feature line of the clause, time (s), and joint positions."""
 
     index: int
     line: int

@@ -31,10 +31,10 @@ FROM_START = "its condition held from the beginning, so it did not become true"
 def with_defined_events(
     trace: Trace, defined: Sequence[DefinedEvent], regions: Regions, *, numbered: bool = True
 ) -> Trace:
-    """Return a trace with the occurrences of defined events instead of any other occurrences of these events.
+    """Return a trace in which occurrences of defined events replace any other occurrences of these events.
 
-    An occurrence belongs to the iteration of the latest event that has one; before the first iteration, it belongs to
-    that. If ``numbered`` is false, as in the execution of a behaviour tree, it belongs to all iterations.
+    An occurrence belongs to the iteration of the latest event with an iteration; before the first iteration, it belongs
+    to the first. If ``numbered`` is false, as in the execution of a behaviour tree, it belongs to all iterations.
     """
     if not defined:
         return trace
@@ -64,9 +64,9 @@ def _iteration(numbers: Sequence[tuple[float, int]], time: float) -> int:
 
 
 def _margins(event: DefinedEvent, trace: Trace, regions: Regions) -> tuple[FloatArray, str]:
-    """Return the margin of the conditions of an event at each sample, shape (n,), and why some of them are unknown.
+    """Return the margin of an event's conditions at each sample, shape (n,), and why some conditions are unknown.
 
-    It is negative where one of the conditions does not hold, else NaN where one of them is unknown.
+    The margin is negative where a condition does not hold, else NaN where a condition is unknown.
     """
     problems: list[str] = []
     every = np.stack([_of_condition(one, trace, regions, problems) for one in event.conditions])
@@ -76,7 +76,7 @@ def _margins(event: DefinedEvent, trace: Trace, regions: Regions) -> tuple[Float
 
 
 def _of_condition(fluent: Fluent, trace: Trace, regions: Regions, problems: list[str]) -> FloatArray:
-    """Return the margin of one condition at each sample, shape (n,), NaN where it is not known."""
+    """Return the margin of one condition at each sample, shape (n,), NaN where it is unknown."""
     margins = np.full(len(trace.times), np.nan)
     if fluent.predicate.evaluate is None:
         problems.append(f"there is no evaluator for '{fluent.predicate.name}'")
@@ -112,7 +112,7 @@ def _fill(
 
 
 def _bound(fluent: Fluent, trace: Trace, regions: Regions) -> float | str:
-    """Return the largest error of a condition's margin in its own unit, or the reason why it is not known."""
+    """Return the largest error of a condition's margin in its own unit, or the reason why the error is unknown."""
     found = [
         bound_of(fluent.predicate, one.arguments, trace, regions) for group in alternatives(fluent) for one in group
     ]

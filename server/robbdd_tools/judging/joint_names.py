@@ -25,8 +25,8 @@ def topic_of(
 ) -> str:
     """Return the topic of the states of an agent's joints.
 
-    It has the name of the agent in its path, or else it ends with ``joint_states``, or else it is the only one that
-    has a joint of the arm. ``stated`` maps agents (CURIE) to topics, and ``names`` joints to their names in the log.
+    The topic has the agent's name in its path, or else it ends with ``joint_states``, or else it is the only topic with
+    a joint of the arm. ``stated`` maps agents (CURIE) to topics, and ``names`` maps joints to their names in the log.
     Raises ``JointsProblem``.
     """
     known = {name.strip("/"): name for name in logged}
@@ -55,7 +55,7 @@ def joint_words(agent: str, joint: str) -> tuple[str, ...]:
 
 
 def stated_joints(agent: str, joints: Sequence[str], stated: Mapping[str, str]) -> dict[str, str]:
-    """Return the entries of ``stated`` for the joints of a model. Its keys are those of ``joint_words``."""
+    """Return the entries of ``stated`` for the joints of a model. The keys of ``stated`` are as in ``joint_words``."""
     keys = {joint: next((word for word in joint_words(agent, joint) if word in stated), "") for joint in joints}
     return {joint: stated[key] for joint, key in keys.items() if key}
 
@@ -80,7 +80,7 @@ def _decorated(agent: str, joints: Sequence[str], known: Mapping[str, str]) -> d
     first = plain_word(joints[0])
     forms = {tuple(word.split(first, 1)) for word in known if first in word}
     fitting = {form for form in forms if all(form[0] + plain_word(joint) + form[1] in known for joint in joints)}
-    # Of two arms on one topic, each has a prefix; that of this one may have its name.
+    # If two arms share a topic, each has a prefix; this arm's prefix may contain its name.
     own = {form for form in fitting if plain_word(local_name(agent)) in form[0]}
     for chosen in ({("", "")} & fitting, own, fitting):
         if len(chosen) == 1:

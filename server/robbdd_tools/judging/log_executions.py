@@ -1,4 +1,4 @@
-"""Find out whether a log is of more than one execution of a scenario."""
+"""Find out whether a log has more than one execution of a scenario."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class SeveralExecutions(RobbddError):
 def check_one_execution(spec: ScenarioSpec, texts: Sequence[TextStamp]) -> None:
     """Raise ``SeveralExecutions`` if a log reports the start of the behaviour again after its end.
 
-    Only the first execution would be judged. Scenarios with several behaviours or iterations report events more than
-    once by themselves; they are not checked.
+    Only the first execution would be judged. Scenarios with several behaviours or iterations are not checked, because
+    even one execution reports events more than once.
     """
     when = [(statement_of(clause), clause) for clause in spec.clauses]
     calls = [(one, clause) for one, clause in when if isinstance(one, BehaviourCall)]

@@ -25,9 +25,9 @@ FIRST_LINK = "link0"
 INTENDED = frozenset(
     ("goal", "target", "desired", "setpoint", "command", "commanded", "cmd", "plan", "planned", "reference", "expected")
 )
-"""Words in the names of topics and frames that are planned and not measured."""
+"""Words in the names of topics and frames with planned, not measured data."""
 _SENTENCE = re.compile(r".*\s.*[#/:]|.*[#/:]\s", re.DOTALL)
-"""A text that is no CURIE and no IRI, although it has one of their separators."""
+"""A text that is neither a CURIE nor an IRI, although it has one of their separators."""
 _SEPARATORS = re.compile(r"[\s_.-]+")
 
 
@@ -36,18 +36,18 @@ class FramesProblem(Exception):
 
 
 def local_name(curie: str) -> str:
-    """Return what follows the last colon of a CURIE, without the path of its set."""
+    """Return the part of a CURIE after its last colon, without the path of its set."""
     return re.split(r"[:/#]", curie)[-1]
 
 
 class NoElement(RobbddError):
-    """A request states something about a name that is no element of the scene; the message lists the nearest ones."""
+    """A request states something about a name that is no element of the scene; the message lists similar names."""
 
 
 def elements_of(stated: Mapping[str, V], elements: Iterable[str]) -> dict[str, V]:
-    """Return a mapping of CURIEs for one of CURIEs or local names. Raises ``NoElement`` for another name.
+    """Return a mapping with CURIEs instead of CURIEs or local names. Raises ``NoElement`` for any other name.
 
-    Names of groups of elements (``GROUPS``) stay as they are.
+    Names of groups of elements (``GROUPS``) do not change.
     """
     known = {word: element for element in elements for word in (element, local_name(element))}
     found: dict[str, V] = {}
@@ -86,7 +86,7 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
     """Return the frame of an element (CURIE) among the frames of a log.
 
     ``stated`` maps elements (CURIE or local name) to frames. Without an entry, the frame has the name of the element,
-    or it has this name as a part of its path (``cell/cube1``), unless the path says that the place is only planned
+    or has this name as a part of its path (``cell/cube1``), unless a word of the path means a planned place
     (``goal/cube1``). Case and separators are ignored. Raises ``FramesProblem``.
     """
     known = sorted(frames)
@@ -112,13 +112,13 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
 
 
 def _is_intended(frame: str, name: str) -> bool:
-    """Return whether a frame is planned and not measured, by the words of its path beside the name of an element."""
+    """Return whether a frame is planned and not measured, judged by the words of its path except the element's name."""
     others = [part for part in frame.split("/") if plain_word(part) != plain_word(name)]
     return not INTENDED.isdisjoint(word for part in others for word in _SEPARATORS.split(part.casefold()))
 
 
 def tool_frame_of(agent: str, frames: Iterable[str], stated: Mapping[str, str]) -> str:
-    """Return the frame of an agent's tool (CURIE) as ``frame_of`` does, but never a base that is only found by name.
+    """Return the frame of an agent's tool (CURIE) like ``frame_of``, but never a base that is only found by name.
 
     Raises ``FramesProblem``.
     """
@@ -133,8 +133,8 @@ def tool_frame_of(agent: str, frames: Iterable[str], stated: Mapping[str, str]) 
 def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], stated: str) -> str:
     """Return the frame of the base of an agent (CURIE) among the frames of a log; empty if it has none.
 
-    It is the ``stated`` one or, if that is empty, the one that ends with one of the ``usual`` names. Of several, it is
-    the one with the name of the agent. Raises ``FramesProblem``.
+    This is the ``stated`` frame or, if none is stated, the frame that ends with one of the ``usual`` names. If several
+    frames do, it is the one with the name of the agent. Raises ``FramesProblem``.
     """
     known = sorted(frames)
     if stated:
@@ -153,8 +153,8 @@ def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], state
 def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list[float]:
     """Return the times (s) at which a log reports an event (CURIE), in order.
 
-    A text reports it by the name of the event or of one that its ``emitter`` states, with the usual decorations
-    (``evt-pick-end``). It may be a CURIE or an IRI, but a sentence such as ``waiting for: pick-end`` reports nothing.
+    A text reports an event by its name or by a name of its ``emitter``, with the usual decorations (``evt-pick-end``).
+    The text may be a CURIE or an IRI, but a sentence such as ``waiting for: pick-end`` reports nothing.
     """
     names = [local_name(event), *each_emitter(emitter)]
     words = [(one.time, one.text.strip()) for one in texts]
@@ -162,7 +162,7 @@ def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list
 
 
 def plain_word(name: str) -> str:
-    """Return a name without case and separators, to compare it with names that are written in other ways."""
+    """Return a name without case and separators, to compare it with other spellings."""
     return _SEPARATORS.sub("", name).casefold()
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False) -> Iterator[Curve]:
     """Yield the curve of each fluent.
 
-    For a fluent over a set, it is the curve of the worst element or, if any element suffices, of the best one.
+    For a fluent over a set, this is the curve of the worst element or, if one element suffices, of the best element.
     """
     match clause:
         case Fluent():
@@ -80,15 +80,14 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
 
 
 def fluent_margins(fluent: Fluent, evidence: WindowEvidence) -> FloatArray:
-    """Return the margin of a fluent at each sample of a window, shape (n,): over its sets, the one that decides.
+    """Return the margin of a fluent at each sample of a window, shape (n,). For sets, this is the deciding margin.
 
-    If one sample suffices, this is the margin of one element at all samples.
-    It is infinite at samples at which the fluent's condition does not hold. Raises the errors of evaluators, which may
-    be users' code.
+    If one sample suffices, this is the margin of one element at all samples. It is infinite at samples at which the
+    fluent's condition does not hold. Raises the errors of evaluators, which may be users' code.
     """
     groups = ([_margins(fluent, evidence, one) for one in group] for group in alternatives(fluent))
     if fluent.time.some_time:
-        # Each element has a moment of its own, so the elements are compared by their largest margins.
+        # Elements may satisfy the fluent at different samples, so they are compared by their largest margins.
         return max((min(group, key=_largest) for group in groups), key=_largest)
     best: FloatArray = np.max([np.min(group, axis=0) for group in groups], axis=0)
     return best

@@ -45,7 +45,7 @@ def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: 
 
     The second instant is the beginning of the first behaviour in the clause's scope. The result is ``None`` where the
     question is meaningless: for other clauses, for intervals, which require a state to persist, and for predicates that
-    are set up or measured in windows only.
+    are set up or only measured in windows.
     """
     fluents = list(fluents_of(clause))
     if stated.role != "then" or not fluents:

@@ -22,8 +22,8 @@ class Stream:
 
     The provider observes at the times k / rate. An observation is known after the latency. Each axis has noise that
     depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known positions, and ``stamps``
-    (n,) s are the times at which they were observed. The samples of a log are observations already: they are used as
-    they are. Raises ``Unobserved`` if the simulation has no such provider, or if no observation is known yet.
+    (n,) s are the times at which they were observed. The samples of a log are already observations and are used
+    unchanged. Raises ``Unobserved`` if the simulation does not have the provider, or if no observation is known yet.
     """
 
     def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:

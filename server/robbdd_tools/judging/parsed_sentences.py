@@ -75,7 +75,7 @@ def read_step(role: str, text: str, wording: int = WORDING, named: Named = ()) -
 def read_clause(text: str, wording: int = WORDING, named: Named = ()) -> Clause:
     """Parse the sentence of a Given or Then step; never raises.
 
-    A time constraint that the version of the wording no longer has is part of a text, which nothing judges.
+    A time constraint that this version of the wording no longer has makes the sentence a text, which nothing judges.
     """
     own = tuple((one, re.compile(fluent_pattern(one))) for one in named)
     for predicate, pattern in (*_fluents(), *own):
@@ -106,7 +106,7 @@ def read_clause(text: str, wording: int = WORDING, named: Named = ()) -> Clause:
 
 
 def unescaped(text: str) -> str:
-    """Return the string that a step contains in escaped form, as the user wrote it."""
+    """Return the string that the user wrote, from its escaped form in a step."""
     return _ESCAPE.sub(lambda match: chr(int(match[1], 16)) if match[1] else _NAMED.get(match[2], match[2]), text)
 
 
@@ -123,7 +123,7 @@ def _conditions() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
 
 
 def _condition(text: str | None, named: Named) -> Condition | None:
-    """Return the conditions that a part of a sentence states; ``None`` if a predicate is not in the catalog."""
+    """Return the conditions in a part of a sentence; ``None`` if a predicate is not in the catalog."""
     found = [] if text is None else [_one_condition(part, named) for part in _split(text, " and ")]
     known = [one for one in found if one is not None]
     return joint_condition(known) if len(known) == len(found) else None

@@ -1,4 +1,4 @@
-"""Judge clauses by the observation policies of a ``.bddx``, which replace observation and evaluation by the catalog."""
+"""Judge clauses by the observation policies of a ``.bddx`` instead of the catalog's observation and evaluation."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MEASURED: Mapping[str, Literal["length", "nothing", "otherwise"]] = {
     "topic": "nothing",
     "python": "otherwise",
 }
-"""Kind of a rule → how errors of measured poses change its margin."""
+"""How errors of measured poses change the margin of a rule, by the rule's kind."""
 
 
 def _attached(clause: Clause, policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
@@ -127,7 +127,7 @@ class Observed:
         return self._streams[name].positions
 
     def stamps(self, name: str) -> FloatArray:
-        """Return the time at which each of these positions was observed, s, shape (n,). Raises ``KeyError``."""
+        """Return the time at which each position of an element was observed, s, shape (n,). Raises ``KeyError``."""
         return self._streams[name].stamps
 
 
@@ -164,7 +164,7 @@ def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
 def _as_margins(name: str, evaluate: object, answer: Any, count: int) -> FloatArray:
     """Return the answer of users' code as margins for all samples.
 
-    Numbers are unchanged, true is 1, and false is -1.
+    Numbers do not change; true is 1, and false is -1.
     """
     values = np.asarray(answer)
     if values.dtype == bool:

@@ -1,4 +1,4 @@
-"""Find the fluents of a clause that need a quantity that is measured on demand, and the elements in them."""
+"""Find the fluents of a clause that need a quantity measured on demand, and the elements in them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def fluents_with_quantity(clause: Clause, quantity: str) -> Iterator[tuple[Fluen
 
 
 def _of_predicates(predicate: Predicate, arguments: Mapping[str, str], quantity: str) -> Iterator[Mapping[str, str]]:
-    """Yield the arguments of a predicate, or of those in its definition that need a quantity."""
+    """Yield the arguments of a predicate, or of the predicates in its definition, that need a quantity."""
     if not isinstance(predicate.evaluate, CompoundEvaluator):
         yield arguments
         return

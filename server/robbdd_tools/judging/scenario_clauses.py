@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def statement_of(known: ClauseSpec) -> Statement | None:
     """Return the statement of a clause in the manifest.
 
-    If an earlier version stored the sentence only, the sentence is parsed.
+    If an earlier version stored only the sentence, the sentence is parsed.
     """
     return known.statement or _with_iris(read_step(known.role, known.sentence, FIRST_WORDING), known)
 
@@ -43,9 +43,9 @@ def stated_by_step(
 
 
 def is_free_text(statement: Statement | None, text: str) -> bool:
-    """Return whether the text of a step is none of the catalog's sentences, so that behave has no step for it.
+    """Return whether the text of a step is no sentence of the catalog, so that behave has no step for it.
 
-    A fluent whose predicate is in the catalog may be written as free text, too.
+    A fluent with a predicate of the catalog may also be written as free text.
     """
     if isinstance(statement, Fluent) and definition_of(statement.predicate) is None:
         return re.fullmatch(fluent_pattern(statement.predicate), text) is None
@@ -115,7 +115,7 @@ def iterations_of_events(spec: ScenarioSpec) -> Mapping[str, Collection[int]]:
 def iteration_of_event(event: str, known: ClauseSpec | None, spec: ScenarioSpec) -> int:
     """Return the iteration in which a When clause expects an event; 0 for any iteration.
 
-    It is the first one in the scope of the clause in which a behaviour emits the event, if there is any.
+    It is the first iteration in the scope of the clause in which a behaviour emits the event, if there is any.
     """
     if known is None or not known.iterations:
         return 0

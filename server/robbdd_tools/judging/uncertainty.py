@@ -41,9 +41,9 @@ def certain(
 ) -> Verdict:
     """Judge like ``monitor.judge``, but *unknown* where the uncertainty of the measurements could change the verdict.
 
-    A condition of ``whenever`` applies surely where its margin exceeds its uncertainty, and perhaps where it is above
-    the negative uncertainty. So the clause holds surely if it holds wherever its condition perhaps applies, and is
-    violated surely if it is where the condition surely applies.
+    A condition of ``whenever`` certainly applies where its margin exceeds its uncertainty, and possibly applies where
+    its margin exceeds the negative uncertainty. So the clause certainly holds if it holds wherever its condition
+    possibly applies. It is certainly violated if it is violated where its condition certainly applies.
     """
     if any(isinstance(one.evaluate, CompoundEvaluator) for one, _ in ((predicate, arguments), *_parts(condition))):
         return _certain_definition(predicate, arguments, constraint, trace, regions, condition)
@@ -82,7 +82,7 @@ def _certain_definition(
     regions: Regions,
     condition: Condition | None,
 ) -> Verdict:
-    """Judge a clause with a named predicate: a verdict is certain if all margins may be wrong by their doubts."""
+    """Judge a clause with a named predicate: a verdict is certain if no margin error within the doubts changes it."""
     doubts: list[str] = []
 
     def raised(one: Predicate, own: Arguments, by: int) -> Predicate:
@@ -93,7 +93,7 @@ def _certain_definition(
         return _raised((one, own), by * bound, trace, regions)[0]
 
     def verdict(sign: int) -> Verdict:
-        """Judge with all margins raised (``sign`` 1) or lowered (-1), and those of conditions the other way."""
+        """Judge with all margins raised (``sign`` 1) or lowered (-1), and the margins of conditions the other way."""
         own = changed(predicate, arguments, lambda one, given, inner: raised(one, given, inner * sign))
         if condition is None:
             return judge(own, arguments, constraint, trace, regions)
@@ -112,10 +112,10 @@ def _certain_definition(
 
 
 def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float | str:
-    """Return the largest error of a predicate's margin in the SI unit, or the reason why it is not known.
+    """Return the largest error of a predicate's margin in the SI unit, or the reason why the error is unknown.
 
-    A length changes by at most the sum of the errors of two positions: of the elements that the predicate names, or of
-    others that it does not name.
+    A length changes by at most the sum of the errors of two positions. If the predicate names fewer than two elements,
+    the largest error of any element counts for the missing ones.
     """
     match predicate.measured:
         case "nothing":
@@ -181,7 +181,7 @@ def _raised(condition: Condition, by: float, trace: Trace, regions: Regions) -> 
 
 
 class _Raised:
-    """An evaluator whose margins are those of another one, plus a number."""
+    """An evaluator that adds a number to the margins of another evaluator."""
 
     def __init__(self, evaluate: Callable[[Evidence, Arguments], FloatArray], by: float) -> None:
         self._evaluate = evaluate

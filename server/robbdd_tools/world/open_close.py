@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from robbdd_tools.world.scene import Cast
 
 SPEED = 0.15
-"""Largest speed of the tool while it holds a handle, m/s: people close doors and drawers at about this speed."""
+"""Largest speed (m/s) of the tool while it holds a handle: people close doors and drawers at about this speed."""
 SPACING = 0.01
-"""Distance between the points of the tool's path with a handle, m."""
+"""Distance (m) between the points of the tool's path with a handle."""
 
 
 def opening_by_handle(cast: Cast, name: str) -> Opening:
-    """Return how a thing opens. Raises ``SceneError`` if this is not known, or if it has no handle."""
+    """Return how a thing opens. Raises ``SceneError`` if this is not known, or if the thing has no handle."""
     opening = cast.openings.get(name)
     if opening is None:
         raise SceneError(f"'{name}' has no joint to open or to close", origin=cast.origin(name))
@@ -52,18 +52,18 @@ class OpenClose:
         self._simulation = hand.simulation
 
     def open(self, name: str) -> Step:
-        """Open a thing; raises ``BehaviourError``. One that is open stays as it is."""
+        """Open a thing; raises ``BehaviourError``. A thing that is open stays as it is."""
         self._emit("open-start")
         opening = opening_by_handle(self._simulation.world.cast, name)
         if not self._is_past(opening, opening.open):
-            # The last part of the way is room: a pull against the stop would drag the thing along.
+            # Aim short of the joint's stop: a pull against the stop would drag the thing along.
             yield from self._bring(name, opening, (opening.open + opening.ends[1]) / 2)
             if not self._is_past(opening, opening.open):
                 raise BehaviourError(f"{name} is not open at {self._hand.time:.2f} s")
         self._emit("open-end")
 
     def close(self, name: str) -> Step:
-        """Close a thing; raises ``BehaviourError``. One that is closed stays as it is."""
+        """Close a thing; raises ``BehaviourError``. A thing that is closed stays as it is."""
         self._emit("close-start")
         opening = opening_by_handle(self._simulation.world.cast, name)
         if self._is_past(opening, opening.closed):
@@ -95,7 +95,7 @@ class OpenClose:
         except BehaviourError as error:
             raise BehaviourError(str(error).replace(opening.part, f"the handle of {name}")) from error
         hand.held = None
-        # A finger between the handle and the thing has no more room than before.
+        # A finger may be between the handle and the thing, with no more room than before.
         yield from hand.gripper.open_to(hand, control)
         yield from hand.wait(round(hand.robot.model.release_time / TICK))
         yield from hand.move(hand.at_travel(hand.tool))
@@ -103,7 +103,7 @@ class OpenClose:
     def _choose_grasp(self, name: str, part: str) -> tuple[Approach, float]:
         """Return a grasp of the handle that has room for the hand, and the control value of the gripper there.
 
-        The gripper is open or, where an open one has no room, open just enough for the handle. Raises
+        The gripper is open or, if an open gripper has no room, open just enough for the handle. Raises
         ``BehaviourError``.
         """
         simulation, hand, robot = self._simulation, self._hand, self._hand.robot

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource
 
 NEARER = 0.25
-"""Share of a joint's range up to which the position in the file shows which end is the closed one."""
+"""An end of a joint's range is the closed one if the file's position is within this share of the range from it."""
 DIMENSIONS = {"slide": "length", "hinge": "angle"}
 OVERRIDE = "state them in its model: opening { joint: … closed: … open: … }"
 
@@ -26,7 +26,7 @@ def opening_of(
 ) -> Opening | str:
     """Return how an element opens, or the reason why this is not known.
 
-    ``joints`` maps the name in the file of each joint to the moving element and its joint. Raises ``SceneError`` if the
+    ``joints`` maps the name of each joint in the file to the moving element and its joint. Raises ``SceneError`` if the
     data in the scene instance do not fit the file.
     """
     stated = (source.opening if source is not None else None) or OpeningModel()

@@ -1,4 +1,4 @@
-"""Owners, elements of the scene, of what a compiled world consists of."""
+"""Map the geoms of a compiled world to the elements of the scene that own them."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ _BELT = re.compile(r"/belt\d+\Z")
 
 
 def scenery_name(number: int) -> str:
-    """Return the scenery's name for a model of the whole scene: the prefix of its bodies and geoms."""
+    """Return the name of a model of the whole scene: the prefix of its bodies and geoms."""
     return f"{SCENERY}{number}"
 
 
 def shape_name(owner: str, shape: str | int) -> str:
-    """Return the name of a geom in the world: of an element by the number of its shape, of scenery by its name."""
+    """Return the name of a geom in the world, made of its owner and of the number or the name of the shape."""
     return f"{owner}/shape{shape}" if isinstance(shape, int) else f"{owner}/{shape}"
 
 
 def is_scenery(name: str) -> bool:
-    """Return whether a name is that of a model of the whole scene; elements have a namespace."""
+    """Return whether a name belongs to a model of the whole scene; names of elements have a namespace."""
     return name.startswith(SCENERY) and name[len(SCENERY) :].isdecimal()
 
 
 def joint_of_part(name: str) -> str:
-    """Return the name in the world of the joint of a moving part."""
+    """Return the name of a moving part's joint in the world."""
     return f"{name}/joint"
 
 
 def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:
     """Return the name of each geom's agent or object.
 
-    A geom of the scenery is owned by its body, one of the room has its own name.
+    The owner of a geom of the scenery is its body. A geom of the room is listed by its own name.
     """
     return [_owner_of(model, geom, tuple(agents)) for geom in range(model.ngeom)]
 

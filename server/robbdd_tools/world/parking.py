@@ -1,4 +1,4 @@
-"""Where an arm that is not needed waits for others."""
+"""Find the place where an idle arm waits for others."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 ASIDE = (pi / 2, -pi / 2, 0.0)
-"""Turns (rad) about the axis of the base from home to the places tried, best first."""
+"""The tool waits at places that are turned by these angles (rad) from home about the base's axis, best first."""
 AHEAD = 1e-6
-"""Difference of distances (m) up to which two places are equally good."""
+"""Two places are equally good if their distances differ by at most this (m)."""
 
 
 def parking_pose(simulation: Simulation, robot: Robot) -> ToolPose | None:
     """Return the tool pose in which an arm is out of the way of the others, ``None`` if it has none.
 
-    It is the home pose turned by a quarter of a turn, to the side that is farther from the bases of the others, because
-    at home most tools are above the table; else the home pose. It is not below the travelling height and without a
-    collision.
+    Because most tools are above the table at home, this is the home pose turned by a quarter turn, to the side that is
+    farther from the bases of the others, or else the home pose. It is collision-free and not below the travelling
+    height.
     """
     home = at_travel(robot, present_pose(arm_of(robot.model), arm_of(robot.model).home))
     clearance = Clearance(simulation, robot, "", simulation.data)

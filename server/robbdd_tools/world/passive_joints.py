@@ -1,4 +1,4 @@
-"""Joints of the moving parts of objects in a world: composed, placed and read."""
+"""Compose, place and read the joints of the moving parts of objects in a world."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 STICKING = (0.004, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""Parameters of dry friction in a joint. With the engine's own ones, it creeps: 14 mm/s under 8 N of its 20 N."""
+"""Parameters of dry friction in a joint. With the engine's own ones, a joint of 20 N creeps at 14 mm/s under 8 N."""
 
 
 def add_joint(spec: Any, body: Any, name: str, model: ObjectModel) -> None:
-    """Add the joint of a moving part to its body, which does not collide with the one that carries it.
+    """Add the joint of a moving part to its body. The part does not collide with the body that carries it.
 
-    The range of the joint stops the part, as in the file. The shapes of both usually touch or overlap at the joint.
+    The shapes of both usually touch or overlap at the joint. The joint's range stops the part, as in the file.
     """
     joint = model.joint
     assert joint is not None, "a moving part has a joint"
@@ -49,7 +49,7 @@ def add_joint(spec: Any, body: Any, name: str, model: ObjectModel) -> None:
 
 
 def pose_at_zero(model: ObjectModel, carrier: ObjectModel) -> Pose:
-    """Return the pose of a moving part's body in the frame of the body that carries it, as the file shows it."""
+    """Return the pose of a moving part's body in the frame of the body that carries it, as in the file."""
     joint = model.joint
     assert joint is not None, "a moving part has a joint"
     place: FloatArray = np.array(joint.position) + carrier.frame
@@ -57,7 +57,7 @@ def pose_at_zero(model: ObjectModel, carrier: ObjectModel) -> Pose:
 
 
 def initial_pose(model: ObjectModel, carrier: ObjectModel, carried_at: Pose) -> Pose:
-    """Return the pose of a moving part in the world at the start, for the pose of the one that carries it."""
+    """Return the initial world pose of a moving part whose carrier is at the world pose ``carried_at``."""
     joint, here = model.joint, pose_at_zero(model, carrier)
     assert joint is not None, "a moving part has a joint"
     way, anchor = joint.start - joint.zero, np.add(joint.anchor, model.frame)
@@ -79,7 +79,7 @@ def initial_pose(model: ObjectModel, carrier: ObjectModel, carried_at: Pose) -> 
 
 
 def ways_of_parts(objects: Mapping[str, ObjectModel], poses: Mapping[str, Pose]) -> Iterator[tuple[Pose, ObjectModel]]:
-    """Yield the moving parts of the catalog's models where they are when closed and when open."""
+    """Yield the moving parts of the catalog's models, each with its closed and its open pose in the world."""
     for model in objects.values():
         joint = model.joint
         if joint is not None and joint.bounds is not None and joint.parent and objects[joint.parent].moving:

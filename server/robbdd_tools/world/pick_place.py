@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 STILL, STILL_TURN, STILL_FOR = 2e-3, 0.02, 0.3
 """An object on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s).
 
-The slowest belt moves it by 3 mm; a belt that slips below it makes it tremble by some tenths of a millimetre and
-milliradians.
+In this time, the slowest belt moves the object by 3 mm. A belt that slips below it makes it tremble by some tenths
+of a millimetre and some milliradians.
 """
 PATIENCE = 30.0
 """Maximum wait for an object to come to rest, s."""
 RISE = 1e-3
-"""Height difference (m) from which on the tool rises before it travels: on a slant it would hit the place."""
+"""If the travelling height is more than this (m) above the tool, it rises first: on a slant it could hit the place."""
 
 
 class PickPlace(ArmControl):
@@ -121,8 +121,8 @@ class PickPlace(ArmControl):
     def _approach(self, name: str) -> Generator[None, None, Approach]:
         """Open the gripper and move above the grasp; return the grasp; raises ``BehaviourError``.
 
-        A part that balances with a corner against a belt's stop seems at rest for a while and then turns, ever faster:
-        a grasp chosen before that would hit its top.
+        A part that balances with a corner against a belt's stop seems to be at rest for a while and then turns ever
+        faster: a grasp that was chosen before would hit its top.
         """
         given_up = self.time + PATIENCE
         while True:
@@ -174,7 +174,7 @@ class PickPlace(ArmControl):
         if len(workspaces) == 1:
             return self._choose_target(name, workspaces[0], grasp)
         simulation, robot = self.simulation, self.robot
-        # Sorting is stable: grasps with equal room keep their order.
+        # Sorting is stable: workspaces with room keep their order, and so do those without.
         for workspace in sorted(workspaces, key=lambda one: not has_room(simulation, robot, name, one)):
             try:
                 found = self._choose_target(name, workspace, grasp)
@@ -218,7 +218,7 @@ class PickPlace(ArmControl):
     def _reached(
         self, wanted: ToolPose, name: str, grasp: Grasp, missed: Obstruction
     ) -> tuple[ToolPose, FloatArray] | None:
-        """Return a pose, or the one with both fingers interchanged, and the joint positions (rad) there."""
+        """Return the pose, or the same pose with both fingers interchanged, and the joint positions (rad) there."""
         for pose in either_way(self.arm, wanted):
             try:
                 return pose, joints_at(self.arm, self._carried_to(pose, name, grasp), pose)
@@ -227,7 +227,7 @@ class PickPlace(ArmControl):
         return None
 
     def _carried_to(self, pose: ToolPose, name: str, grasp: Grasp) -> ToolPose:
-        """Return the pose above a place to which the tool carries an object."""
+        """Return the pose above ``pose`` to which the tool carries an object, high enough to clear shapes below."""
         over = self.at_travel(pose)
         room = self.robot.model.carry_clearance
         if not room:
@@ -238,6 +238,6 @@ class PickPlace(ArmControl):
 
 
 def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:
-    """Return whether a pose (position m, rotation matrix) differs from another by more than the tremor of a rest."""
+    """Return whether two poses (position m, rotation matrix) differ by more than an object at rest trembles."""
     turned = np.arccos(np.clip((np.trace(last[1].T @ here[1]) - 1.0) / 2.0, -1.0, 1.0))
     return bool(np.linalg.norm(here[0] - last[0]) > STILL or turned > STILL_TURN)

@@ -1,4 +1,4 @@
-"""Render a simulated world with its workspaces drawn and labelled."""
+"""Render a simulated world with its labelled workspaces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WIDTH, HEIGHT = 1280, 800
 COLORS = ((0.10, 0.55, 0.90), (0.95, 0.55, 0.10), (0.25, 0.70, 0.30), (0.80, 0.25, 0.55), (0.55, 0.45, 0.85))
 OPACITY = 0.20
 THIN = 0.06
-"""Opacity of a workspace that contains other workspaces, such as a table's."""
+"""Opacity of a workspace that contains other workspaces, such as the workspace of a table."""
 LABEL = 0.012
 """Radius (m) of a label's dot."""
 OVERVIEW = (128.0, -36.0)
@@ -31,11 +31,11 @@ CLOSE, DOWN = 1.1, -30.0
 AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
 """Camera directions (degrees) for one object, best first."""
 DISTANT, SLIGHTLY_DOWN = 1.35, -28.0
-"""Distance as a multiple of an arm's size, and elevation (degrees) of the camera for one arm."""
+"""Distance of the camera for one arm, as a multiple of the arm's size, and its elevation (degrees)."""
 AXIS, THICK = 0.12, 0.006
 """Length and thickness (m) of the axes of a tool."""
 LONGEST = 90
-"""Maximum bytes of a label in the engine."""
+"""Maximum number of bytes of a label in the engine."""
 
 
 class NoPicture(Exception):
@@ -45,7 +45,7 @@ class NoPicture(Exception):
 class Camera:
     """Renders a simulation: the whole scene from the side of the table, or one object in close-up.
 
-    ``size`` is width and height in pixels; a ``plain`` picture has no shadows, which takes a tenth of the time. Raises
+    ``size`` is width and height in pixels. A ``plain`` picture has no shadows and takes a tenth of the time. Raises
     ``NoPicture`` if no back end can render.
     """
 
@@ -116,13 +116,13 @@ class Camera:
         self._view.azimuth, self._view.elevation = azimuth, elevation
 
     def _starts(self) -> Iterator[FloatArray]:
-        """Yield the places from which mobile robots start, m: they may have left them."""
+        """Yield the places (m) where mobile robots start, so that they are in view when the robots have left them."""
         for robot in self._simulation.robots.values():
             if robot.mobile is not None:
                 yield np.array([robot.mobile.start.position])
 
     def _labelled(self, data: Any) -> Iterator[FloatArray]:
-        """Yield the corners (8, 3) of each workspace, m, one of which has its label."""
+        """Yield the corners (8, 3) m of each workspace; one of these corners has the label."""
         for _, carrier, region in self._regions():
             body = data.body(carrier)
             local = np.array(region.center) + CORNERS * (np.array(region.half) + LABEL)
@@ -166,7 +166,7 @@ class Camera:
         free = self._simulation.world.cast.objects[carrier].free
         opacity = OPACITY if free else THIN
         _add(scene, mujoco.mjtGeom.mjGEOM_BOX, half, center, turn, (*color, opacity), "")
-        # Objects lie in the middle of a table, so its label goes to a corner; boards lie side by side.
+        # Objects lie in the middle of a table, so a corner has its label; boards lie side by side.
         side = 0.0 if region.walled else -0.8 if odd else 0.8
         corner = np.array([0.0, side, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
         above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))

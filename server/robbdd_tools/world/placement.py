@@ -1,4 +1,4 @@
-"""Initial places: tables and bins by the catalog, graspable objects at random."""
+"""Initial places: tables and bins are at the catalog's places, graspable objects at random ones."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from robbdd_tools.world.scene import Cast
 
 TABLE_TOP = 0.10
-"""Height of table tops above the world's origin, m. The paper does not define it, as the world frame is its own."""
+"""Height (m) of table tops above the world's origin. The paper does not define it, as it has its own world frame."""
 FLOOR = TABLE_TOP - HEIGHT
 """Height of the floor, m, world frame."""
 BEARING = 2.6
-"""Largest angle to either side of straight ahead that an arm has to turn to, rad."""
+"""Objects are placed where an arm turns by at most this angle (rad) to either side of straight ahead."""
 FINGER_GAP = 0.04
-"""Room for a finger around an object on a table, m."""
+"""Room (m) for a finger around an object on a table."""
 HAND_GAP = 0.08
-"""Room for a hand next to a bin's wall, m."""
+"""Room (m) for a hand next to a bin's wall."""
 TOUCHING = 0.002
-"""Room around objects where there is no space for more, m."""
+"""Room (m) around objects if there is no space for more."""
 BIN_SKEW = 0.2
-"""Largest rotation (rad) of objects in a bin relative to its edges: a hand fits into a bin only along its length."""
+"""Largest rotation (rad) of objects in a bin relative to the bin's edges: a hand fits only along its length."""
 BIN_ROOM = 0.03
-"""Half edge (m) of the square in a bin's middle where a hand can work."""
+"""A hand can work in a square in a bin's middle; this is half its edge (m)."""
 TRIES = 400
 SQUARE = 1e-3
-"""Share of a quarter turn up to which edges count as parallel to the world's axes."""
+"""Edges count as parallel to the world's axes up to this share of a quarter turn."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The pose of every object's centre, and the number of resampled places, rejected for overlaps."""
+    """The pose of every object's centre, and the number of places that were resampled because of overlaps."""
 
     poses: dict[str, Pose]
     resampled: int
@@ -58,10 +58,10 @@ class Arrangement:
 
 @dataclass(frozen=True, slots=True)
 class _Field:
-    """A rectangle to draw positions from: centre and half edges (m, world frame), height of objects there (m).
+    """A rectangle to draw positions from: centre and half edges (m, world frame), and height (m) of objects there.
 
-    ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` are distances to other objects and bins (m); in a bin
-    there is no ``wall_gap``. ``base`` is that of the robot that works there.
+    ``skew`` bounds the rotation (rad). ``gap`` and ``wall_gap`` are distances (m) to other objects and to bins; in a
+    bin there is no ``wall_gap``. ``base`` is the base of the robot that works there.
     """
 
     center: tuple[float, float]
@@ -86,14 +86,14 @@ def footprint(model: ObjectModel) -> float:
 
 
 def surface(model: ObjectModel) -> float:
-    """Return the height (m) above its origin of the surface on which an object carries others, 0 without one."""
+    """Return how high (m) above an object's origin its surface for other objects is, 0 without such a surface."""
     return 0.0 if model.region is None else model.region.center[2] - model.region.half[2]
 
 
 def mounts(cast: Cast) -> dict[str, Pose]:
     """Return the pose of each agent's base; raises ``SceneError`` if there is no room for one.
 
-    Agents that an executable scene does not place stand at the table: the first at its model's mount, the others at the
+    Agents without a place in an executable scene are at the table: the first at its model's mount, the others at the
     opposite side and at the ends.
     """
     placed = {name: pose for name in cast.agents if (pose := cast.base(name)) is not None}
@@ -110,9 +110,9 @@ def mounts(cast: Cast) -> dict[str, Pose]:
 
 
 def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
-    """Return a base at a side of a table: 0 the front, 1 opposite, 2 and 3 the ends, at the front's distance."""
+    """Return a base at a side of a table: 0 the front, 1 opposite, 2 and 3 the ends. All have the front's distance."""
     x, y, z = robot.mount
-    # A user's own table has no standard place: its pose decides, and only the front is known.
+    # A user's own table has no standard place: its pose counts, and only the front is known.
     middle = table.places[0][0] if table.places else x
     half = (0.0, 0.0) if table.region is None else table.region.half[:2]
     end = half[1] + (middle - half[0] - x)
@@ -127,7 +127,7 @@ def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
 def arrange(
     scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator, *, is_mobile: bool = False
 ) -> Arrangement:
-    """Lay the objects of a scene out for an agent at ``base``, or for one that drives from there.
+    """Lay out the objects of a scene for an agent that works at ``base`` or drives from there.
 
     Raises ``SceneError`` for a place that does not exist or if there is not enough room.
     """
@@ -181,7 +181,7 @@ def arrange(
 
 
 def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:
-    """Return an object's pose from the scene, resampled until it overlaps no other, and the number of resamples."""
+    """Return an object's pose from the scene, resampled until nothing overlaps it, and the number of resamples."""
     radius, pose = footprint(cast.objects[name]), first
     for attempt in range(1, TRIES):
         x, y, _ = pose.position
@@ -201,7 +201,7 @@ def bearing(base: Pose, x: float, y: float) -> float:
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
-    """Yield each object with its standard place; raises ``SceneError`` if there is none."""
+    """Yield each object with its standard place; raises ``SceneError`` for an object without one."""
     try:
         yield from at_places(cast.objects, names, where)
     except NoRoom as error:
@@ -209,7 +209,7 @@ def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple
 
 
 def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
-    """Map each table to the objects at fixed places on it; unassigned ones are on the first table."""
+    """Map each table to the objects at fixed places on it; objects without a table are on the first one."""
     chosen: dict[str, list[str]] = {table: [] for table in cast.tables}
     homes: dict[str, str] = {}
     for outer, inner in scene.contains.items():
@@ -230,7 +230,7 @@ def _fields(
 ) -> Iterator[_Field]:
     """Yield the areas for an object, best first; raises ``SceneError`` if there are none.
 
-    ``works_at`` returns the robot's base when it works at an object.
+    ``works_at`` returns where the robot's base is when it works at an object.
     """
     carrier = cast.tables[0]
     region = cast.objects[carrier].region
@@ -263,7 +263,7 @@ def _fields(
 
 
 def _flat(half: Vector, yaw: float) -> Vector:
-    """Return half edges (m), along the world's axes, of a rectangle inside a box that is turned by an angle (rad)."""
+    """Return the half edges (m), along the world's axes, of a rectangle inside a box turned by ``yaw`` (rad)."""
     quarters = yaw / (pi / 2)
     if abs(quarters - round(quarters)) > SQUARE:
         least = min(half[:2]) / 2**0.5

@@ -1,4 +1,4 @@
-"""Joints between the floor and an arm on which a mobile base moves."""
+"""Find the joints of a mobile base, which are between the floor and an arm."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from robbdd_tools.world.engine import mujoco
 
 LEVEL = 1e-6
-"""Deviation of an axis from the horizontal or the vertical up to which it counts as such."""
+"""An axis counts as horizontal or vertical up to this deviation (a cosine)."""
 HALL = 3.0
-"""Range (m) of sliding joints from which on they are those of a base that drives, not of a gantry."""
+"""Sliding joints with at least this range (m) belong to a base that drives, others to a gantry."""
 _BASE = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
 
 
 def drives(model: Any, joints: tuple[str, ...]) -> bool:
-    """Return whether the first three of an arm's joints in a file are those of a base that drives."""
+    """Return whether the first three of an arm's joints in a file belong to a base that drives."""
     if len(joints) <= len(_BASE):
         return False
     found = planar_joints(model, int(model.joint(joints[len(_BASE)]).id))
@@ -29,7 +29,7 @@ def drives(model: Any, joints: tuple[str, ...]) -> bool:
 def planar_joints(model: Any, joint: int) -> tuple[int, int, int] | None:
     """Return the joints of a mobile base that carries a joint of an arm, ``None`` if its base is fixed.
 
-    They are the first three joints from the world on: two horizontal sliding ones, then one about the vertical.
+    These are the first three joints after the world: two horizontal sliding joints, then one about the vertical.
     """
     chain = [one for one in _joints_to(model, joint) if one != joint]
     if len(chain) < len(_BASE) or tuple(int(model.jnt_type[one]) for one in chain[:3]) != _BASE:

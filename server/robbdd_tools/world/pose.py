@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Pose:
     """Position (m, world frame) and rotation about the vertical (rad).
 
-    ``rotation`` is the full rotation as a quaternion, w first, of a body that does not stand upright.
+    For a body that is not upright, ``rotation`` is the full rotation as a quaternion, w first.
     """
 
     position: Vector

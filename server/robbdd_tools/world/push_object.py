@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 SPEED = 0.1
 """Largest speed of the tool while it pushes, m/s."""
 STROKES = 8
-"""Pushes after which the behaviour gives up: each one corrects the deviation of those before."""
+"""The behaviour gives up after this many pushes; each push corrects the deviation of earlier ones."""
 INSIDE = 0.02
-"""Distance (m) from the sides of the workspace at which an object has arrived."""
+"""An object has arrived when it is this far (m) inside the sides of the workspace."""
 BEHIND = 0.05
-"""Room (m) between the object and the tool that is lowered behind it."""
+"""Room (m) between the object and the tool when the tool is lowered behind it."""
 LOW = 0.02
-"""Smallest height (m) of the tool above the support: the tips of fingers are below it."""
+"""Smallest height (m) of the tool above the support: the tips of the fingers are below the tool."""
 ASIDE = 0.03
 """A push ends when the object deviates this far (m) from the line of the push."""
 SPACING = 0.01
@@ -45,7 +45,7 @@ class PushObject:
         self._simulation = hand.simulation
 
     def push(self, name: str, workspaces: Sequence[str]) -> Step:
-        """Push an object into a workspace, with further pushes if it turns away; raises ``BehaviourError``."""
+        """Push an object into a workspace, and push again if it turns away; raises ``BehaviourError``."""
         if name not in self._simulation.world.cast.objects:
             raise BehaviourError(f"there is no {name} in the scene")
         self._emit("push-start")
@@ -60,7 +60,7 @@ class PushObject:
         self._emit("push-end")
 
     def _way_to(self, name: str, workspaces: Sequence[str]) -> FloatArray:
-        """Return the shortest horizontal way (2,) m into a workspace; zeros if the object is in it."""
+        """Return the shortest horizontal way (2,) m into a workspace; zeros if the object is already inside."""
         position, _ = self._simulation.seen(name)
         regions = self._simulation.world.cast.regions
         ways = [
@@ -76,7 +76,7 @@ class PushObject:
         room = np.maximum(np.array(region.half[:2]) - INSIDE, 0.0)
         if (np.abs(local) <= room).all():
             return np.zeros(2)
-        # It goes on into the middle half, so that it does not stop at the limit.
+        # Aim at the middle half, so that the object does not stop at the limit.
         way: FloatArray = rotation[:2, :2] @ (np.clip(local, -room / 2, room / 2) - local)
         return way
 

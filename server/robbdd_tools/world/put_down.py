@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 ALONG = (0.0, -0.03, 0.03)
-"""Places along a bin's length where a hand fits, m from its centre."""
+"""A hand fits into a bin at these distances (m) along its length from its centre."""
 GRID = 7
 """Number of places tried along each side of a table."""
 INTO_BIN, ONTO_TABLE = 0.02, 0.005
-"""Height above the surface at which an object is released, m."""
+"""An object is released at this height (m) above the surface."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A place to put an object: a point on the surface (m, world frame) and the release height above it (m).
+    """A place to put an object: a point on the surface (m, world frame) and the release height (m) above it.
 
-    ``closing`` is the direction (rad) of the fingers there, ``None`` for any.
+    ``closing`` is the closing direction (rad) of the fingers there, ``None`` for any direction.
     """
 
     position: Vector
@@ -39,7 +39,7 @@ class Target:
 
 
 def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> Iterator[Target]:
-    """Yield places for an object at a workspace, those with most room first; raises ``BehaviourError`` without any."""
+    """Yield places for an object at a workspace, most room first; raises ``BehaviourError`` if there are none."""
     regions = simulation.world.cast.regions.get(workspace)
     if not regions:
         raise BehaviourError(f"nothing in the scene carries {workspace}")
@@ -53,7 +53,7 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
 
 
 def on_tables(simulation: Simulation, robot: Robot, name: str) -> Iterator[Target]:
-    """Yield places for an object on the tables in front of an arm, those with most room first."""
+    """Yield places for an object on the tables in front of an arm, most room first."""
     for table in simulation.world.cast.tables:
         region = simulation.world.cast.objects[table].region
         if region is not None:
@@ -61,7 +61,7 @@ def on_tables(simulation: Simulation, robot: Robot, name: str) -> Iterator[Targe
 
 
 def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
-    """Return whether some place at a workspace is far enough from all loose objects for another one."""
+    """Return whether an object has room between the loose objects at some place of a workspace."""
     radius = footprint(simulation.world.cast.objects[name])
     for carrier, _ in simulation.world.cast.regions.get(workspace, ()):
         others = _others(simulation, name, carrier)
@@ -83,7 +83,7 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    """Yield places on a board or tray: those with most room first, then by distance from the centre."""
+    """Yield places on a board or tray, most room first, then by distance from the centre."""
     position, rotation = simulation.seen_place(carrier)
     radius = footprint(simulation.world.cast.objects[name])
     others = _others(simulation, name, carrier)
@@ -94,7 +94,7 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
     x, y, z = region.center
     points = [position + rotation @ np.array([x + dx, y + dy, z - region.half[2]]) for dx, dy in offsets]
     closing = atan2(rotation[1, longest], rotation[0, longest])
-    # Sorting is stable: equals stay ordered by distance from the centre.
+    # Sorting is stable: places with equal room stay ordered by distance from the centre.
     for point in sorted(points, key=lambda point: _crowding(point[0], point[1], others, radius)):
         yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
 
@@ -120,7 +120,7 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
 
 
 def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float, float, float]]:
-    """Return place (m) and radius (m) of all loose objects but this one and the carrier of the workspace."""
+    """Return place (m) and radius (m) of all loose objects except this one and the carrier of the workspace."""
     found: list[tuple[float, float, float]] = []
     for other, model in simulation.world.cast.objects.items():
         if model.free and other not in (name, carrier):

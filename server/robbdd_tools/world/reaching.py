@@ -1,4 +1,4 @@
-"""Approaches of an agent to an object: grasp poses, joint positions, and remaining clearance."""
+"""Find how an agent can approach an object: grasp poses, joint positions, and remaining clearance."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 NONE = -pi
 """Reach margin (rad) without a collision-free grasp within the joint limits."""
 SAME = 1e-4
-"""State change (m, rad) below which a sample reuses the previous reach margin."""
+"""A sample reuses the previous reach margin if the state has changed by less than this (m, rad)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """A grasp with the tool pose above it and at it, and the joint positions (rad) there.
+    """A grasp with the tool poses above it and at it, and the joint positions (rad) at it.
 
-    ``depth`` is the penetration (m) of the arm into anything else, and ``touched`` the deepest element.
+    ``depth`` is how deep (m) the arm penetrates anything else, and ``touched`` is the element penetrated most.
     """
 
     grasp: Grasp
@@ -47,7 +47,7 @@ class Approach:
 
 @dataclass(slots=True)
 class Obstruction:
-    """Why an arm cannot reach any of several poses: the one that it misses least, the elements that it would touch."""
+    """Why an arm reaches none of several poses: the pose that it misses least, and the elements that it would touch."""
 
     nearest: Unreachable | None = None
     touched: dict[str, None] = field(default_factory=dict[str, None])
@@ -84,7 +84,7 @@ def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
 
 
 def either_way(arm: Arm, pose: ToolPose) -> tuple[ToolPose, ...]:
-    """Return a tool pose and, unless results of the arm are published, the same with both fingers interchanged."""
+    """Return a tool pose and, unless results of the arm are published, the same pose with its fingers interchanged."""
     if arm.is_published:
         return (pose,)
     return pose, replace(pose, turn=pose.turn - pi if pose.turn > 0.0 else pose.turn + pi)
@@ -95,8 +95,8 @@ def approaches(
 ) -> Iterator[Approach]:
     """Yield every grasp of an object within the joint limits, in the current state or in that of ``data``.
 
-    How far the others are out of reach is noted in ``missed``.
-    Raises ``BehaviourError`` when the scene has no such object or the gripper is too small for it.
+    ``missed`` records how far other grasps are out of reach. Raises ``BehaviourError`` if the scene has no such object
+    or the gripper is too small for it.
     """
     objects = simulation.world.cast.objects
     if name not in objects:
@@ -114,7 +114,7 @@ def approaches(
 def approaches_by(
     robot: Robot, grasps: Iterable[Grasp], clearance: Clearance, missed: Obstruction | None = None
 ) -> Iterator[Approach]:
-    """Yield those of some grasps that are within the joint limits; how far others are out of reach is noted."""
+    """Yield the grasps within the joint limits; ``missed`` records how far the others are out of reach."""
     arm = arm_of(robot.model)
     for grasp in grasps:
         for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
@@ -131,7 +131,7 @@ def approaches_by(
 
 
 class ReachSampler:
-    """Measures on demand, from recorded states, how well agents could reach objects."""
+    """Measure on demand, from recorded states, how well agents could reach objects."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -146,7 +146,7 @@ class ReachSampler:
         robot = self._simulation.robots[agent]
         known = self._margins.setdefault((agent, name), {})
         states = self._simulation.recorder.states
-        # The arm's own position does not matter: the margin is about where it could be.
+        # The arm's own position does not matter: the margin is about possible positions.
         others = np.ones(states.shape[1], dtype=bool)
         others[robot.joints] = False
         last: tuple[FloatArray, float] | None = None

@@ -23,8 +23,8 @@ class Bodies:
     """The recorded bodies and their places in the state.
 
     ``positions`` (m, 3) m and ``orientations`` (m, 4) are the initial poses of the bodies ``names``; fixed bodies keep
-    them. The poses of those in the columns ``loose`` (k,) are in the engine's state at the indices ``places`` (k, 3)
-    and ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools and the parts that move by joints.
+    them. The columns ``loose`` (k,) are bodies with poses in the engine's state, at the indices ``places`` (k, 3) and
+    ``turns`` (k, 4). The columns ``tools`` (a,) are the agents' tools and the parts that move by joints.
     """
 
     names: tuple[str, ...]
@@ -39,8 +39,8 @@ class Bodies:
 class Recorder:
     """Samples of bodies and of each agent's grips. Rows are only ever appended.
 
-    A sample is the engine's own state of ``width`` numbers, which allows returning to an instant. Derived quantities
-    are computed for many samples at once, when a trace is requested.
+    A sample is the engine's own state of ``width`` numbers, so that the simulation can return to an instant. Derived
+    quantities are computed for many samples at once, when a trace is requested.
     """
 
     def __init__(self, bodies: Bodies, agents: tuple[str, ...], width: int) -> None:
@@ -66,9 +66,9 @@ class Recorder:
         return self._states[: self._rows]
 
     def append(self, time: float, state: FloatArray, grips: Mapping[str, FloatArray]) -> FloatArray:
-        """Append a sample: the state (width,), per agent its grips (m,).
+        """Append a sample: the state (width,), and the grips (m,) of each agent.
 
-        Returns the array for these tools' positions and orientations, shape (a, 7).
+        Return the array, shape (a, 7), into which the caller writes the positions and orientations of the tools.
         """
         if self._rows == len(self._times):
             self._grow()

@@ -29,7 +29,7 @@ class Robot:
         self.name = name
         self.model = robot
         self.base: Pose = world.bases[name]
-        """The pose of the arm's frame, to which tool poses refer; that of a mobile base changes."""
+        """The pose of the arm's frame, to which tool poses refer; on a mobile base, this pose changes."""
         mobile = base_of(robot)
         self.mobile = None if mobile is None else BaseState(model, name, mobile, self.base)
         joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
@@ -42,7 +42,7 @@ class Robot:
         self.limits: FloatArray = np.array(
             [model.jnt_range[joint.id] for joint in joints if model.jnt_limited[joint.id]]
         ).reshape(-1, 2)
-        """Their lower and upper limits (rad, or m of a sliding joint), shape (k, 2)."""
+        """Lower and upper limits (rad, or m for a sliding joint) of the joints ``limited``, shape (k, 2)."""
         self.motors = np.array([driven[joint.id] for joint in joints])
         self.targets = model.actuator_actadr[self.motors]
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
@@ -54,15 +54,15 @@ class Robot:
         )
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
-        """Seconds by which a joint's target leads to compensate for the servo's damping, shape (n,)."""
+        """A joint's target leads by this time (s) to compensate for the servo's damping, shape (n,)."""
 
     def follow_base(self, data: Any) -> None:
-        """Note where a mobile base is in a state of the engine."""
+        """Update ``base`` with the pose of a mobile base in a state of the engine."""
         if self.mobile is not None:
             self.base = self.mobile.frame_at(data.qpos[self.mobile.joints])
 
     def standing_in(self, data: Any) -> Robot:
-        """Return the robot with its base where it is in another state of the engine."""
+        """Return the robot with its base at the pose in another state of the engine."""
         if self.mobile is None:
             return self
         found = copy(self)

@@ -29,22 +29,22 @@ if TYPE_CHECKING:
 SPEED = 1.0
 """Speed limit (rad/s, m/s) of an arm's joints if neither the file nor the model has one."""
 STIFFNESS, DAMPING = 2000.0, 100.0
-"""Smallest gains (N m/rad, N m s/rad) of the servos that are added."""
+"""Smallest gains (N m/rad, N m s/rad) of added servos."""
 SLIDING = 10.0
-"""Factor of these gains for a sliding joint (N/m, N s/m)."""
+"""For a sliding joint, the smallest gains (N/m, N s/m) are this many times as large."""
 FREQUENCY, RATIO = 20.0, 0.7
-"""Natural frequency (rad/s) and damping ratio of the servos that are added to joints with a large inertia."""
+"""Natural frequency (rad/s) and damping ratio of servos that are added to joints with a large inertia."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
-"""Height (m, world frame) of the floor on which it stands."""
+"""Height (m, world frame) of the floor on which a base that drives stands."""
 TOOL = "robbdd-tool"
 ALIGNED = np.cos(np.radians(5.0))
-"""The y axis of a stated tool is kept if the cosine of its angle to the direction of the fingers is at least this."""
+"""The y axis of a stated tool is kept if the cosine of its angle to the closing direction is at least this."""
 OUTWARDS = np.cos(np.radians(30.0))
-"""Cosine of the angle between the stated tool's z axis and the direction out of the hand up to which it is kept."""
+"""The z axis of a stated tool is kept if the cosine of its angle to the direction out of the hand is at least this."""
 ARMS = 16
-"""Number of arms that are kept."""
+"""Size of the cache of arms."""
 _prepared: dict[str, Any] = {}
 
 
@@ -56,8 +56,8 @@ def prepared_robot(key: str) -> Any | None:
 def robot_from(source: ModelSource, name: str, tilt: Tilt | None = None) -> RobotModel:
     """Return the arm in a file, with missing servos and names added; raises ``SceneError``.
 
-    From a base with a ``tilt``, tools point down, too.
-    A file is read once in a process; code that makes a model is called each time.
+    Tools also point down from a base with a ``tilt``. A file is read once in a process; code that makes a model is
+    called each time.
     """
     return _read_robot(source, name, tilt) if source.kind == "python" else _read_once(source, name, tilt)
 
@@ -175,10 +175,10 @@ def _tool_body(spec: Any, source: ModelSource, name: str) -> Any:
 
 
 def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
-    """Return the bodies to the one that carries all gripping faces.
+    """Return the bodies from the base to the palm, which carries all gripping faces.
 
-    Without stated faces, this is the first one from which several branches with joints lead on, or the last one, but
-    not one beyond the stated tool.
+    Without stated faces, the palm is the first body with several jointed branches, or else the last body, but no body
+    beyond the stated tool.
     """
     tool = path_to(_tool_body(spec, source, arm.tool)) if arm.tool else []
     carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
@@ -208,7 +208,7 @@ def _chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> list[Any]:
 
 
 def _without_wheels(body: Any, branches: list[Any]) -> list[Any]:
-    """Return the branches with joints of a body without the wheels of a base that drives."""
+    """Return the jointed branches of a body, except the wheels of a base that drives."""
     kinds = [joint.type for one in path_to(body) for joint in one.joints]
     slide, hinge = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE
     if len(branches) < 2 or kinds != [slide, slide, hinge]:
@@ -223,7 +223,7 @@ def _moves(body: Any) -> bool:
 
 
 def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
-    """Return the joints of the arm, from the base on."""
+    """Return the joints of the arm, the one nearest to the base first."""
     joints = tuple(str(joint.name) for body in chain for joint in body.joints)
     if not joints:
         raise SceneError(f"no joint leads to the hand '{chain[-1].name}' of {source.name}", origin=source.origin)
@@ -233,7 +233,7 @@ def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
 def _tool(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, palm: Any) -> str:
     """Return the name of the tool's site, with z out of the hand and y along the closing direction.
 
-    A stated site or body with such axes is kept; any other one gives the place only.
+    A stated site or body with these axes is kept; any other one gives only the place.
     """
     site, body = (spec.site(stated), spec.body(stated)) if stated else (None, None)
     if site is None and body is not None:
@@ -263,9 +263,9 @@ def _tool(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, pa
 
 
 def _face_ahead(spec: Any, model: Any, joints: tuple[str, ...], home: tuple[float, ...]) -> None:
-    """Turn the tool that was found by half a turn if its x axis then points ahead at home.
+    """Turn a found tool by half a turn if its x axis then points ahead at home.
 
-    The fingers are interchangeable, and so the wrist turns as far to one side as to the other.
+    The fingers are interchangeable; with x ahead, the wrist can turn as far to one side as to the other.
     """
     data: Any = mujoco.MjData(model)
     for joint, value in zip(joints, home, strict=True):
@@ -280,7 +280,7 @@ def _face_ahead(spec: Any, model: Any, joints: tuple[str, ...], home: tuple[floa
 
 
 def _servos(spec: Any, joints: tuple[str, ...]) -> None:
-    """Give each joint without a position servo one, in place of its motor or velocity servo.
+    """Replace the motor or velocity servo of each joint without a position servo by a position servo.
 
     A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too.
     """
@@ -323,7 +323,7 @@ def _largest_force(actuator: Any) -> float:
 
 
 def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
-    """Return the inertia (kg m², kg) that each joint moves where the file places the arm."""
+    """Return the inertia (kg m², kg) that each joint moves in the arm's posture in the file."""
     model = spec.copy().compile()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)

@@ -1,4 +1,4 @@
-"""Data about an arm as a run uses them: what its file states, what was found in it and what is assumed."""
+"""Report the data of an arm that a run uses: those that its file states, those found in it, and those assumed."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 NUMBERED = re.compile(r"(actuator|joint)\d+")
 """Names that actuators and joints without a name get."""
 FOUND = "robbdd-"
-"""Prefix of names that files of arms do not have: they are added where a part has no name, and to what was found."""
+"""Prefix of added names that no file of an arm has: names of parts without a name, and of things that were found."""
 NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 SAME = 1e-3
-"""Difference (rad, m) of the joints of an open gripper up to which it is the same one."""
+"""An open gripper counts as the same if its joints differ by less than this (rad, m)."""
 
 
 def report(simulation: Simulation, name: str, source: ModelSource | None) -> Iterator[str]:
-    """Yield the lines of a report on an agent. ``source`` is the file of its model, ``None`` for one of the catalog."""
+    """Yield the lines of a report on an agent. ``source`` is its model's file, ``None`` for a model of the catalog."""
     robot, model = simulation.robots[name].model, simulation.model
     is_cup = robot.gripper is GripperKind.SUCTION
     fingers = "a suction cup" if is_cup else _fingers(model, name, robot)
@@ -67,7 +67,7 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
 
 
 def _without_contacts(model: Any, name: str) -> Iterator[str]:
-    """Yield the moving links whose shapes, if any, touch nothing: collisions of them are never noticed."""
+    """Yield the moving links that have only visual shapes: their collisions are never noticed."""
     own = _bodies(model, name)
     touching = {
         int(model.body_weldid[model.geom_bodyid[geom]])
@@ -88,9 +88,10 @@ def _fingers(model: Any, name: str, robot: RobotModel) -> str:
 
 
 def as_stated(robot: RobotModel, name: str, source: ModelSource) -> ArmModel:
-    """Return the data of an arm as a scene instance can state them, so that the arm stays the same.
+    """Return the data of an arm that a scene instance can state without a change of the arm.
 
-    Data about a gripper are left out if they would change it: of several actuators that close it, one can be named.
+    Data about a gripper are left out if they would change it: several actuators may close it, but only one can be
+    named.
     """
     if NUMBERED.fullmatch(robot.gripper_actuator):
         return ArmModel(home=robot.home, velocity=robot.velocity_limits)
@@ -116,7 +117,7 @@ def as_stated(robot: RobotModel, name: str, source: ModelSource) -> ArmModel:
 
 
 def stated(arm: ArmModel, source: ModelSource, joints_slide: bool) -> Iterator[str]:
-    """Yield the lines of a ``.scenex`` that state the data of an arm, to be changed where they are wrong."""
+    """Yield the lines of a ``.scenex`` that state the data of an arm; a user changes them where they are wrong."""
     yield f"model arm_model as {source.format} {{"
     yield f"    sys path = '{source.name}'"
     if arm.tool:
@@ -138,7 +139,7 @@ def stated(arm: ArmModel, source: ModelSource, joints_slide: bool) -> Iterator[s
 
 
 def slides(model: Any, name: str, robot: RobotModel) -> list[bool]:
-    """Return for each joint of an arm whether it is a sliding one."""
+    """Return for each joint of an arm whether it is a sliding joint."""
     kinds = (model.joint(f"{name}/{joint}").type[0] for joint in robot.joints)
     return [int(kind) == int(mujoco.mjtJoint.mjJNT_SLIDE) for kind in kinds]
 
@@ -178,7 +179,7 @@ def _table(rows: list[list[str]]) -> Iterator[str]:
 
 
 def _semantic_description(source: ModelSource) -> Iterator[str]:
-    """Yield which SRDF file is used; several of one robot are not."""
+    """Yield a line on the SRDF file that is used; if a robot has several, none is used."""
     srdf = file_of(source)
     if srdf is not None:
         yield f"semantic description: {srdf.path.name}, {len(srdf.apart)} pairs of links without collisions"

@@ -1,4 +1,4 @@
-"""The engine's editable descriptions of robots: of the catalog's files, and of users' prepared ones."""
+"""The engine's editable descriptions of robots, from the catalog's files and from users' prepared files."""
 
 from __future__ import annotations
 

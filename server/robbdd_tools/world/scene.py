@@ -1,4 +1,4 @@
-"""Catalog models for the elements of a scene, and the regions of its workspaces."""
+"""Choose models for the elements of a scene, and find the regions of its workspaces."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
     from robbdd_tools.world.staging import Staging
 
 PEDESTAL = "pedestal"
-"""Name of the table that is added to a scene without one."""
+"""Name of the table that is added to a scene without fixed objects."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cast:
     """A scene with a model for every object and agent.
 
-    - ``regions``: maps a workspace to its boxes, each with the object in whose frame it is given. A workspace without a
-      carrier is absent.
+    - ``regions``: maps a workspace to its boxes, each with the object in whose frame the box is given. A workspace
+      without a carrier is absent.
     - ``ranges``: the areas in which some elements are laid out (``position_range``).
     - ``seed``: the seed that the scene sets, if any.
     - ``drops``: the heights (m) from which some elements are dropped (``drop_height``).
@@ -56,7 +56,7 @@ class Cast:
     left_out: tuple[str, ...] = ()
     """Elements that no clause uses and that have no model or, for agents, no place."""
     heights: Mapping[str, float] = field(default_factory=dict[str, float])
-    """Height (m) of each object before ``height_scale``."""
+    """Height (m) of each object before ``height_scale`` is applied."""
     openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
     """How each thing with a joint opens, or the reason why this is not known."""
 
@@ -79,14 +79,14 @@ class Cast:
         return self.origin(error.element) if error.element else None
 
     def without_robot(self, name: str) -> SceneError:
-        """Return the reason why an agent that is no robot of the scene cannot execute a behaviour."""
+        """Return the error that an agent executes no behaviour because it is no robot of the scene."""
         if name in self.objects:
             return SceneError(f"'{name}' is a bystander: it executes no behaviour")
         return SceneError(f"the scene has no agent '{name}'")
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """The fixed objects, which carry everything else. The one with the largest top is first."""
+        """The fixed objects, which carry everything else, the one with the largest top first."""
         fixed = [name for name, model in self.objects.items() if not can_move(model) and not model.bystander]
         return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
 
@@ -96,15 +96,15 @@ def _top_area(model: ObjectModel) -> float:
 
 
 def local_name(curie: str) -> str:
-    """Return what follows the last colon of a CURIE."""
+    """Return the part of a CURIE after its last colon."""
     return curie.rpartition(":")[2]
 
 
 def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     """Choose models for the elements of a scene, and configure them.
 
-    They are chosen from an executable scene or, otherwise, by name. Raises ``SceneError`` for a name without a model
-    and for an impossible configuration.
+    Models are from the executable scene, or else from the catalog by name. Raises ``SceneError`` for a name without a
+    model and for an impossible configuration.
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
@@ -123,7 +123,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
         model = _agent_model(scene, staging, name)
-        # Bystanders stand where an executable scene places them, and nowhere otherwise.
+        # Bystanders are present only where an executable scene places them.
         if name in scene.unused and (model is None or staging is None or staging.base(name) is None):
             left_out.append(name)
             continue
@@ -172,7 +172,7 @@ def _agent_model(scene: SceneSpec, staging: Staging | None, name: str) -> RobotM
 
 
 def _add_moving(objects: dict[str, ObjectModel], openings: dict[str, Opening | str]) -> None:
-    """Add the moving parts of the catalog's models, and how they open."""
+    """Add the moving parts of the catalog's models to ``objects``, and how they open to ``openings``."""
     for name, model in tuple(objects.items()):
         if model.moving is not None and model.moving.joint is not None:
             part, joint = f"{name}/{model.moving.name}", replace(model.moving.joint, parent=name)
@@ -181,7 +181,7 @@ def _add_moving(objects: dict[str, ObjectModel], openings: dict[str, Opening | s
 
 
 def _bare_carriers(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[str]:
-    """Yield the objects that carry a workspace without a region of their own or of one of their moving parts."""
+    """Yield the objects that carry a workspace although neither they nor their moving parts have a region."""
     for name in {one: None for own in scene.workspaces.values() for one in own if one in objects}:
         if not any(objects[one].region or objects[one].parts for one in moving_with(name, objects)):
             yield name
@@ -191,14 +191,14 @@ def moving_with(name: str, objects: Mapping[str, ObjectModel]) -> tuple[str, ...
     """Return an object and the moving parts that it carries, at any depth."""
     found = [name]
     for one, model in objects.items():
-        # A part comes after the one that carries it.
+        # A part follows its carrier.
         if model.joint is not None and model.joint.parent in found:
             found.append(one)
     return tuple(found)
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
-    """Return the objects that carry a workspace. For any other target, return the target itself."""
+    """Return the objects that carry a workspace. Return any other target itself."""
     return carriers(scene, target) or (target,)
 
 
@@ -229,8 +229,8 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
 def _spaces(carrier: str, workspace: str, objects: Mapping[str, ObjectModel]) -> list[tuple[str, Region]]:
     """Return the regions of a workspace that an object carries, each with the object in whose frame it is.
 
-    Of an object with moving parts, these are those whose name the workspace's name contains; without any, those without
-    a name; without any, all.
+    For an object with moving parts, these are the regions whose name is contained in the workspace's name; if there are
+    none, the regions without a name; if there are none, all regions.
     """
     members = moving_with(carrier, objects)
     if len(members) == 1:
@@ -256,7 +256,7 @@ def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
 def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
     """Return the objects that carry a workspace.
 
-    If it has none of its own, return those of the workspaces inside it.
+    If nothing carries it directly, return the carriers of the workspaces inside it.
     """
     return _carriers(scene, workspace, frozenset())
 

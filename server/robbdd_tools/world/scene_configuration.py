@@ -26,7 +26,7 @@ CONTROLLER = {
     "release_time": "release_time",
     "travel_height": "travel_height",
 }
-"""Configurations of how an agent picks and places → attributes of its model."""
+"""Names of configurations for picking and placing → attributes of the agent's model."""
 
 
 @dataclass(slots=True)
@@ -34,7 +34,7 @@ class Configured:
     """Configured models of objects and agents, position ranges (m) and the seed, if any.
 
     ``drops`` are the heights (m) from which objects are dropped. ``chosen`` are configurations, by element and name,
-    that controllers and grippers read; ``judged`` are those that change only how the world is judged.
+    that controllers and grippers read. ``judged`` are configurations that only change how the world is judged.
     """
 
     objects: dict[str, ObjectModel]
@@ -48,7 +48,7 @@ class Configured:
 
 
 def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, ...]]]) -> None:
-    """Apply configurations, each to the elements that its target stands for.
+    """Apply each configuration to the elements that its target stands for.
 
     Raises ``SceneError`` for an unknown name or value, an element without such a configuration, and two values for one
     configuration.
@@ -112,12 +112,12 @@ def _open(found: Configured, opening: Opening, share: float) -> None:
 
 
 def _loose(found: Configured, areas: Mapping[str, Numbers]) -> list[str]:
-    """Return the objects that are laid out at random and that have no value of their own."""
+    """Return the objects that are laid out at random and have no value of their own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in areas]
 
 
 def _driven(model: ObjectModel, speed: float) -> ObjectModel:
-    """Return an object whose belts run at another speed (m/s), in their directions."""
+    """Return an object with belts at another speed (m/s), in the same directions."""
 
     def at_speed(velocity: Vector) -> Vector:
         x, y, z = velocity

@@ -1,4 +1,4 @@
-"""Pairs of robot parts that can collide: all but those that are always close to each other."""
+"""Pairs of robot parts that can collide: all pairs except parts that are always close to each other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import RobotModel
 
 NEAR = 2
-"""Joints between two parts up to which collisions are ignored: the housings of wrists overlap across two joints."""
+"""Collisions of parts with up to this many joints between them are ignored: housings of wrists overlap across two."""
 WORLD = 0
 
 
@@ -25,10 +25,10 @@ def name_bodies(child: Any) -> None:
 
 
 def pairs_apart(child: Any, robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
-    """Return the pairs of bodies of a robot whose contacts are ignored, and those close to its base.
+    """Return the pairs of a robot's bodies whose contacts are ignored, and the bodies close to its base.
 
-    As usual in motion planning, these are neighbours (``NEAR``), parts of one gripper, and bodies that touch at home
-    with the gripper open, as shapes are coarser than the arm. All bodies have names, see ``name_bodies``.
+    As usual in motion planning, the pairs are neighbours (``NEAR``), parts of one gripper, and bodies that touch at
+    home with an open gripper, because shapes are coarser than the arm. All bodies must have names, see ``name_bodies``.
     """
     model = child.copy().compile()
     names = [str(model.body(body).name) for body in range(model.nbody)]

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 AT_REST = 2e-3
 """Speed (m/s and rad/s) below which an object is at rest."""
 REST_TICKS = 6
-"""Number of ticks in a row for which everything must be at rest."""
+"""A world has settled when everything has been at rest for this many ticks in a row."""
 SETTLE_TICKS = 190
-"""Ticks (about three seconds) after which a world counts as settled in any case."""
+"""After this many ticks (about three seconds), a world counts as settled in any case."""
 
 
 class Simulation:
@@ -65,7 +65,7 @@ class Simulation:
         self._column = {name: index for index, name in enumerate(names)}
         parts = [name for name, model in world.cast.objects.items() if model.joint is not None]
         self._grips = Grips(self.model, self.robots, self._column, [*self._free, *parts])
-        # Views of the engine's memory, whose address is constant: creating them in every tick is slower.
+        # Views of the engine's memory. Its address is constant, so they need not be created in every tick.
         self._qpos: FloatArray = self.data.qpos
         self._qvel: FloatArray = self.data.qvel
         self._ctrl: FloatArray = self.data.ctrl
@@ -101,14 +101,14 @@ class Simulation:
         self.touches = TouchForces(self.model, chosen, self.world.cast.objects, self.robots) if chosen else None
 
     def introduce(self, fault: RobotFault) -> None:
-        """Let the robots have a fault from now on."""
+        """Give the robots a fault from now on."""
         self._disturbance = Disturbance(
             fault, self.world.seed, self.robots, lambda agent: bool(self._held_by(agent)), self.model
         )
 
     @property
     def pace(self) -> float:
-        """The speed of the robots as a multiple of the speed without a fault."""
+        """The speed of the robots, as a multiple of their speed without a fault."""
         return 1.0 if self._disturbance is None else self._disturbance.pace
 
     def seen(self, name: str) -> tuple[FloatArray, FloatArray]:
@@ -117,7 +117,7 @@ class Simulation:
         return (position if self._disturbance is None else self._disturbance.seen(position)), rotation
 
     def seen_place(self, carrier: str) -> tuple[FloatArray, FloatArray]:
-        """Return the pose of an object that carries a goal as the robots perceive it, in the form of ``pose``."""
+        """Return the pose, as the robots perceive it and in the form of ``pose``, of an object that carries a goal."""
         position, rotation = self.pose(carrier)
         return (position if self._disturbance is None else self._disturbance.seen_place(position)), rotation
 
@@ -132,7 +132,7 @@ class Simulation:
         return self._qpos.copy()
 
     def restore(self, state: FloatArray) -> None:
-        """Put everything at the positions of a state, at rest; the recording and the clock stay as they are."""
+        """Move everything to the positions of a state, at rest. The recording and the clock do not change."""
         self._qpos[:] = state
         self._qvel[:] = 0.0
         mujoco.mj_forward(self.model, self.data)
@@ -144,7 +144,7 @@ class Simulation:
 
     @cached_property
     def scratch(self) -> Any:
-        """A spare state of the engine, created once because this is slow; its users set everything that matters."""
+        """A spare state of the engine, created once because creation is slow; callers set everything that they use."""
         return mujoco.MjData(self.model)
 
     def settle(self) -> None:
@@ -194,7 +194,7 @@ class Simulation:
             mujoco.mju_mat2Quat(row[3:], rotation)
 
     def _sense(self) -> None:
-        """Find what each gripper holds, and take a sample of the contact forces."""
+        """Find the object that each gripper holds, and take a sample of the contact forces."""
         self._grips.find(self.data)
         self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
         if self.touches is not None:
@@ -241,11 +241,11 @@ class Simulation:
         return self.data.site_xpos[robot.tool].copy(), self.data.site_xmat[robot.tool].reshape(3, 3).copy()
 
     def holds(self, agent: str, name: str) -> bool:
-        """Whether the agent's gripper holds the object."""
+        """Return whether the agent's gripper holds the object."""
         return bool(self._grips.held[agent][self._column[name]])
 
     def grips(self, agent: str) -> bool:
-        """Whether the agent's gripper holds anything."""
+        """Return whether the agent's gripper holds anything."""
         return bool(self._grips.held[agent].any())
 
     def targets(self, robot: Robot) -> FloatArray:
@@ -276,9 +276,9 @@ class Simulation:
         self._ctrl[robot.mobile.motors] = (goal - self._act[robot.mobile.targets]) / TICK
 
     def open_fingers(self, robot: Robot, data: Any, control: float | None = None) -> None:
-        """Put a robot's fingers into the open position in ``data``: the start, or a trial state.
+        """Put a robot's fingers into the open position in ``data``, the initial state or a trial state.
 
-        Fingers of the catalog are put where the value ``control`` of their actuator moves them, if it is given.
+        If ``control`` is given, fingers of the catalog are put where this value of their actuator moves them.
         """
         motion = finger_motion(robot.model)
         for name, position in motion.open_joints:

@@ -1,4 +1,4 @@
-"""The door to simulators: what agents and controllers need from a simulated world."""
+"""The interface of simulators: the functions of a simulated world that agents and controllers need."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 class Simulator(Protocol):
-    """A world that is set up by its constructor and advances in control ticks. Metres, radians, seconds, world frame.
+    """A world that its constructor sets up and that advances in control ticks. Metres, radians, seconds, world frame.
 
     - set up: the constructor takes a ``World``; ``settle`` brings it to rest and starts the clock.
     - step: ``tick``.
     - observe: ``pose``, ``velocity``, ``tool``, ``holds``, ``joint_positions``, ``joint_velocities``, ``joint_of``,
       ``contact_force``, ``gravity``, ``trace``, and ``seen`` as a robot with faults would.
-    - command: ``command``, and ``drive`` for mobile bases; ``targets`` is where an arm is going.
+    - command: ``command``, and ``drive`` for mobile bases; ``targets`` are the goals of an arm's joints.
     - snapshot: ``state`` and ``restore``.
     """
 
@@ -59,7 +59,7 @@ class Simulator(Protocol):
         ...
 
     def seen_place(self, carrier: str) -> tuple[FloatArray, FloatArray]:
-        """Return the pose of an object that carries a goal as the robots perceive it, in the form of ``pose``."""
+        """Return the pose, as the robots perceive it and in the form of ``pose``, of an object that carries a goal."""
         ...
 
     def tool(self, robot: Robot) -> tuple[FloatArray, FloatArray]:
@@ -109,9 +109,9 @@ class Simulator(Protocol):
 
     @property
     def state(self) -> FloatArray:
-        """The positions of all joints and loose objects, which a picture needs, shape (q,)."""
+        """The positions of all joints and loose objects, shape (q,), from which a picture is drawn."""
         ...
 
     def restore(self, state: FloatArray) -> None:
-        """Put everything at the positions of a state, at rest; the recording and the clock stay as they are."""
+        """Move everything to the positions of a state, at rest. The recording and the clock do not change."""
         ...

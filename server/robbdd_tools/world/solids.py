@@ -1,4 +1,4 @@
-"""Collision shapes of objects in users' files: primitives where they are aligned with the object, else solids."""
+"""Collision shapes of objects in users' files: primitives if they are aligned with the object, else solids."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 ALIGNED = 1e-6
 EVEN = 1e-3
-"""Share of the mass' extent up to which a distribution of mass is that of even shapes: files round."""
+"""Mass counts as evenly distributed up to this deviation, a share of its extent and of its inertia: files round."""
 _PRIMITIVES = {
     int(mujoco.mjtGeom.mjGEOM_BOX): ShapeKind.BOX,
     int(mujoco.mjtGeom.mjGEOM_SPHERE): ShapeKind.SPHERE,
@@ -70,7 +70,7 @@ def shape_in(model: Any, data: Any, geom: int, body: int) -> Shape:
 
 
 def _half(model: Any, geom: int, turn: FloatArray) -> FloatArray:
-    """Return half the edges (m, shape (3,)) of the bounding box of a geom that is turned in the frame of its body."""
+    """Return half the edges (m, shape (3,)) of the bounding box of a geom that is turned relative to its body."""
     size = model.geom_size[geom]
     match _SOLIDS.get(int(model.geom_type[geom])):
         case SolidKind.CAPSULE:
@@ -84,13 +84,13 @@ def _half(model: Any, geom: int, turn: FloatArray) -> FloatArray:
 
 
 def _hull(model: Any, geom: int, turn: FloatArray, center: FloatArray) -> Shape:
-    """Return a mesh as its convex hull, as the engine lets it collide."""
+    """Return a mesh as its convex hull, with which the engine detects contacts."""
     mesh = int(model.geom_dataid[geom])
     first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
     vertices = np.asarray(model.mesh_vert[first : first + count], dtype=float)
     graph = int(model.mesh_graphadr[mesh])
     if graph >= 0:
-        # The hull's graph: the numbers of its vertices and faces, an address for each vertex, then their numbers.
+        # The hull's graph has the counts of vertices and faces, an address for each vertex, then the vertices' numbers.
         corners = int(model.mesh_graph[graph])
         vertices = vertices[model.mesh_graph[graph + 2 + corners : graph + 2 + 2 * corners]]
     placed = center + vertices @ turn.T
@@ -105,7 +105,7 @@ def _hull(model: Any, geom: int, turn: FloatArray, center: FloatArray) -> Shape:
 def inertia_in(model: Any, data: Any, bodies: Sequence[int], root: int, shapes: Sequence[Shape]) -> Inertia | None:
     """Return how the mass of rigidly connected bodies is distributed, in the frame of ``root``.
 
-    ``None`` if it equals that of the shapes at uniform density, or if the bodies have no mass.
+    Return ``None`` if the shapes at uniform density have the same distribution, or if the bodies have no mass.
     """
     masses = model.body_mass[list(bodies)]
     mass = float(masses.sum())
@@ -134,7 +134,7 @@ def inertia_in(model: Any, data: Any, bodies: Sequence[int], root: int, shapes: 
 
 
 def _together(masses: FloatArray, centers: FloatArray, own: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return the centre of mass (m) and the inertia (kg m²) about it of several parts."""
+    """Return the centre of mass (m) of several parts, and their inertia (kg m²) about it."""
     center = masses @ centers / masses.sum()
     whole = np.zeros((3, 3))
     for mass, place, inertia in zip(masses, centers - center, own, strict=True):
@@ -143,7 +143,7 @@ def _together(masses: FloatArray, centers: FloatArray, own: Sequence[FloatArray]
 
 
 def _unit(shape: Shape) -> FloatArray:
-    """Return the inertia (m²) of an even primitive of 1 kg about its centre."""
+    """Return the inertia (m²) about its centre of a primitive of 1 kg and uniform density."""
     a, b, c = shape.size
     match shape.kind:
         case ShapeKind.SPHERE:

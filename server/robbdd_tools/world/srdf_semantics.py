@@ -1,4 +1,4 @@
-"""The SRDF file of an arm, related to the parts of the arm: hand, tool, home, and both ends of the gripper."""
+"""Find hand, tool, home and both ends of the gripper of an arm in its SRDF file."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ArmModel, ModelSource
 
 HOMES, OPENS, CLOSES = ("home", "ready", "default"), "open", "clos"
-"""Names of states: home positions, the best first; beginnings of those of an open and of a closed gripper."""
+"""Names of home states, best first; beginnings of the names of states with an open and with a closed gripper."""
 
 
 @dataclass(frozen=True, slots=True)
 class Semantics:
-    """Data about an arm from its SRDF file; all empty without one.
+    """Data about an arm from its SRDF file; all are empty without a file.
 
     - ``palm``: the body that carries the joints of the end effector.
-    - ``tip``: the end of the arm's chain if it is beyond the palm: the tool.
+    - ``tip``: the tool: the end of the arm's chain, if it is beyond the palm.
     - ``arm``, ``gripper``: the moving joints of the two groups.
-    - ``homes``: states of the arm's group, those called home first.
+    - ``homes``: states of the arm's group, states named home first.
     - ``opened``, ``closed``: states of the gripper's group.
     """
 
@@ -40,7 +40,7 @@ class Semantics:
     closed: State | None = None
 
     def complete(self, spec: Any, arm: ArmModel) -> ArmModel:
-        """Return the data about an arm with those of the SRDF file where nothing is stated."""
+        """Return the data about an arm, completed from the SRDF file where nothing is stated."""
         leader = arm.actuator or next((name for name in _leaders(spec) if name in self.gripper), "")
         ends = [state.positions.get(leader) if state is not None else None for state in (self.opened, self.closed)]
         if arm.open is None and arm.closed is None and None not in ends and ends[0] != ends[1]:
@@ -48,14 +48,14 @@ class Semantics:
         return replace(arm, tool=arm.tool or self.tip)
 
     def note(self, stated: ArmModel, completed: ArmModel) -> str:
-        """Return the end of an error about a gripper whose values the SRDF file states."""
+        """Return the end of an error message about a gripper if its values are from the SRDF file."""
         if stated.open == completed.open or self.opened is None or self.closed is None:
             return ""
         return f". The values are those of the states '{self.opened.name}' and '{self.closed.name}' of {self.file}"
 
 
 def file_of(source: ModelSource) -> Srdf | None:
-    """Return the SRDF file of an arm; ``None`` without exactly one. Raises ``SceneError``."""
+    """Return the SRDF file of an arm, ``None`` if it has none or several. Raises ``SceneError``."""
     found = srdf_files(path_of(source)) if source.kind in ("file", "ros") else ()
     if len(found) != 1:
         return None
@@ -67,10 +67,10 @@ def file_of(source: ModelSource) -> Srdf | None:
 
 
 def apply_srdf(spec: Any, source: ModelSource) -> Semantics:
-    """Return what the SRDF file says about an arm, and apply it to the engine's editable description of the arm.
+    """Return the data of an arm's SRDF file, and apply them to the engine's editable description of the arm.
 
-    Collisions that the file disables are excluded. Joints outside of arm and end effector are fixed where the URDF file
-    has them. An SRDF file with more or less than one moving end effector only excludes collisions. Raises
+    Collisions that the file disables are excluded. Joints outside arm and end effector are fixed at their position in
+    the URDF file. If the SRDF file does not have exactly one moving end effector, it only excludes collisions. Raises
     ``SceneError``.
     """
     srdf = file_of(source)
@@ -108,7 +108,7 @@ def apply_srdf(spec: Any, source: ModelSource) -> Semantics:
 
 
 def path_to(body: Any) -> list[Any]:
-    """Return the bodies from the base of a model to one of its bodies, without the world."""
+    """Return the bodies from the base of a model to ``body``, without the world."""
     found: list[Any] = []
     while body is not None and body.name != "world":
         found.insert(0, body)
@@ -139,7 +139,7 @@ def _joints(spec: Any, srdf: Srdf, name: str, seen: frozenset[str]) -> Iterator[
 
 
 def _palm(spec: Any, joints: frozenset[str]) -> Any:
-    """Return the last body that carries all of some joints and those that follow them."""
+    """Return the last body that carries all of the joints ``joints`` and all joints that follow them."""
     following = {str(one.name1) for one in _couplings(spec) if one.name2 in joints}
     paths = [path_to(spec.joint(joint).parent.parent) for joint in joints | following]
     common = [body for body in paths[0] if all(body.name in {str(one.name) for one in path} for path in paths)]
@@ -151,7 +151,7 @@ def _couplings(spec: Any) -> list[Any]:
 
 
 def _leaders(spec: Any) -> Iterator[str]:
-    """Yield the joints that follow no other one."""
+    """Yield the joints that follow no other joint."""
     followers = {str(one.name1) for one in _couplings(spec)}
     return (str(joint.name) for joint in spec.joints if joint.name not in followers)
 

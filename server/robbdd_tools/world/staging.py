@@ -1,4 +1,4 @@
-"""The data of an executable scene about the elements of a scenario: their models and places."""
+"""Models and places of a scenario's elements in an executable scene."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ PAIR = ("condim", "friction", "solref", "solreffriction", "solimp", "margin", "g
 
 @dataclass(frozen=True, slots=True)
 class DeclaredPair:
-    """A contact between two geoms, declared in model number ``number`` of the whole scene, with its parameters."""
+    """A contact between two geoms, with its parameters, as declared in model ``number`` of the whole scene."""
 
     number: int
     geoms: tuple[str, str]
@@ -61,7 +61,7 @@ class Staging:
         self._files: dict[str, FromFile] = {}
         self._part_names: dict[tuple[str, str], str] = {}
         self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]
-        # The engine drops the pairs of a body that is removed from its model.
+        # If a body is removed from its model, the engine drops its pairs.
         self._pairs = [
             DeclaredPair.of(number, pair) for number, (_, spec) in enumerate(self._worlds) for pair in spec.pairs
         ]
@@ -78,7 +78,7 @@ class Staging:
         return tuple(spec for _, spec in self._worlds)
 
     def carriers_first(self, elements: Iterable[str]) -> list[str]:
-        """Return elements in the order of their names, but those last that may be moving parts of others."""
+        """Return elements in the order of their names, with possible moving parts of others last."""
         names = {element.rpartition(":")[2]: element for element in elements}
         parts = {
             element
@@ -91,7 +91,7 @@ class Staging:
         return any(spec.body(name) is not None for _, spec in self._worlds)
 
     def _hangs_on(self, name: str, others: AbstractSet[str]) -> bool:
-        """Return whether the body of a name hangs by a joint on one of other names, in a model of the whole scene."""
+        """Return whether a joint connects the body ``name`` to one of the ``others`` in a model of the whole scene."""
         for _, spec in self._worlds:
             body, jointed = spec.body(name), False
             while body is not None and body.name != "world":
@@ -104,8 +104,8 @@ class Staging:
     def object_model(self, element: str, carries: bool) -> ObjectModel | None:
         """Return the model of an object, ``None`` if not defined; raises ``SceneError``.
 
-        ``carries`` means that it carries a workspace. An object without a model is the moving part of its name of an
-        object asked for before, else the body of its name in a model of the whole scene, if there is one.
+        ``carries`` means that it carries a workspace. An element without a model is the moving part of the same name of
+        an object that was requested before, or else the body of the same name in a model of the whole scene.
         """
         chosen = self._source(element)
         if chosen is None:
@@ -124,13 +124,13 @@ class Staging:
         return self._files[element].model
 
     def moving_parts(self) -> Iterator[tuple[str, ObjectModel]]:
-        """Yield the moving parts of the objects asked for, each after the one that carries it."""
+        """Yield the moving parts of the requested objects, each after the part that carries it."""
         for element, file in self._files.items():
             for part in file.parts:
                 yield self._part_name(element, part), self._hung(element, file, part)
 
     def openings(self) -> Iterator[tuple[str, Opening | str]]:
-        """Yield how each object asked for opens, or why this is not known. Raises ``SceneError``."""
+        """Yield how each requested object opens, or why this is not known. Raises ``SceneError``."""
         for element, file in self._files.items():
             joints = {
                 part.joint: (self._part_name(element, part), joint)
@@ -148,7 +148,7 @@ class Staging:
                     yield name, opening_of(name, {part.joint: (name, joint)}, None)
 
     def _part(self, element: str) -> ObjectModel | None:
-        """Return the moving part that an element without a model is; ``None`` for another element."""
+        """Return the moving part that an element without a model stands for, ``None`` if there is none."""
         name = element.rpartition(":")[2]
         found = [(owner, one) for owner, file in self._files.items() for one in file.parts if one.body == name]
         if not found:
@@ -166,7 +166,7 @@ class Staging:
         return self._part_names.get((element, part.body), f"{element}/{part.body}")
 
     def _hung(self, element: str, file: FromFile, part: MovingPart) -> ObjectModel:
-        """Return the model of a part with the name of the element that carries it."""
+        """Return the model of a part whose joint names the element that carries the part."""
         joint = part.model.joint
         assert joint is not None, "a moving part has a joint"
         carrier = next((one for one in file.parts if one.body == joint.parent), None)
@@ -174,7 +174,7 @@ class Staging:
         return replace(part.model, joint=replace(joint, parent=parent))
 
     def bystander(self, element: str) -> ObjectModel | None:
-        """Return the model of an agent that executes nothing, ``None`` for any other one."""
+        """Return the model of an agent that executes nothing, ``None`` for any other agent."""
         chosen = self._source(element)
         return load_catalog().bystanders.get(chosen.name) if chosen is not None and chosen.kind == "catalog" else None
 
@@ -210,7 +210,7 @@ class Staging:
         return None if transform is None else _pose(transform)
 
     def base(self, element: str) -> Pose | None:
-        """Return the upright pose of an agent's base, from which its robot may be tilted. Raises ``SceneError``."""
+        """Return the upright pose of an agent's base; the robot's tilt is relative to it. Raises ``SceneError``."""
         pose = self.pose(element)
         return None if pose is None else upright_part(pose)[0]
 
@@ -232,7 +232,7 @@ class Staging:
                 yield shape_name(*first), shape_name(*second), pair
 
     def _geom(self, number: int, geom: str) -> tuple[str, str | int]:
-        """Return the element of a model's geom and the number of its shape, else scenery and geom."""
+        """Return the element and the shape's number of a model's geom, or else the scenery's and the geom's name."""
         for element, found in self._found.items():
             if self._world_of[element] != number:
                 continue

@@ -1,4 +1,4 @@
-"""Where a mobile base stands to work at a workspace: in front of one of its sides."""
+"""Find where a mobile base stands to work at a workspace: in front of one of the workspace's sides."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 FARTHEST, SPACING = 0.80, 0.05
-"""Largest distance (m) of the base's axis from a side of the workspace, and between those that are tried."""
+"""Distances (m) of the base's axis from a side of the workspace are tried below this limit, this far (m) apart."""
 ALONG = (0.0, 0.15, -0.15, 0.30, -0.30, 0.45, -0.45, 0.60, -0.60)
-"""Offsets (m) from the middle of the side that are tried."""
+"""Offsets (m) of the base from the middle of the side, tried in this order."""
 INSIDE = 0.15
-"""Distance (m) of the place that the arm must reach from the side, or half the width of a narrower workspace."""
+"""The arm must reach a place this far (m) inside the side, or in the middle of a narrower workspace."""
 ABOVE = 0.10
-"""Height (m) of that place above the bottom of the workspace."""
+"""Height (m) of the place that the arm must reach above the bottom of the workspace."""
 
 
 def standing_places(
@@ -33,7 +33,7 @@ def standing_places(
 ) -> Iterator[FloatArray]:
     """Yield for each side of a workspace the best pose of the base (x m, y m, yaw rad) there, if there is one.
 
-    The base is free of collisions, faces the side, and the arm reaches a place in the workspace from it.
+    The base is collision-free and faces the side, and from it the arm reaches a place in the workspace.
     """
     for carrier, region in simulation.world.cast.regions.get(workspace, ()):
         position, rotation = simulation.seen_place(carrier)
@@ -68,7 +68,7 @@ def _before_side(
 
 
 def _reaches(robot: Robot, pose: FloatArray, place: FloatArray) -> bool:
-    """Return whether the arm reaches a place (3,) m with its tool down when its base is at a pose."""
+    """Return whether the arm with its base at a pose reaches a place (3,) m with its tool down."""
     assert robot.mobile is not None, "only mobile bases drive"
     arm = arm_of(robot.model)
     base = robot.mobile.frame_at(robot.mobile.positions_at(pose))

@@ -1,6 +1,6 @@
-"""Bases that hang or lean: an upright base at the same place, from which the arm is turned.
+"""Represent bases that hang or lean by an upright base at the same place and a tilt of the arm.
 
-So all controllers see an upright base whose x axis points ahead, and tools point down from a ceiling, too.
+So all controllers see an upright base whose x axis points ahead, and tools point down, even from a ceiling.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ Quaternion = tuple[float, float, float, float]
 """w, x, y, z."""
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 LYING = 0.1
-"""Length of an axis' horizontal part from which on its direction is known."""
+"""The direction of a unit axis is known if its horizontal part is longer than this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """The rotation (w, x, y, z) of a base from its upright one, and its height (m, rounded) in the world frame."""
+    """The rotation (w, x, y, z) of a base relative to its upright base, and its height (m, world frame, rounded)."""
 
     rotation: Quaternion
     height: float
@@ -35,8 +35,7 @@ class Tilt:
 def upright_part(pose: Pose) -> tuple[Pose, Tilt | None]:
     """Return the upright pose of a base, and the tilt of the base from it, if any.
 
-    Ahead is where the x axis of the base points to; if that is vertical, as that of an arm on a wall may be, it is
-    where the z axis points to.
+    The x axis of the base points ahead. If it is vertical, as may happen for an arm on a wall, the z axis points ahead.
     """
     if not pose.rotation:
         return pose, None

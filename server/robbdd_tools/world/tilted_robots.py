@@ -1,4 +1,4 @@
-"""Robots of the catalog on bases that hang or lean: they need another home."""
+"""Prepare robots of the catalog for bases that hang or lean: they need another home."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.world.tilted_base import Tilt
 
 ARMS = 16
-"""Number of arms that are kept."""
+"""Size of the cache of arms."""
 
 
 def tilted(robot: RobotModel, tilt: Tilt | None, source: ModelSource) -> RobotModel:
-    """Return a robot of the catalog on a base, which may be tilted. Raises ``SceneError``."""
+    """Return a robot of the catalog for a base that may be tilted. Raises ``SceneError``."""
     if tilt is None:
         return robot
     if base_of(robot) is not None:

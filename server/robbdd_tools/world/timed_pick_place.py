@@ -1,7 +1,8 @@
 """The behaviour that the paper tested: a state machine whose phases last for fixed times and check nothing.
 
-Targets jump or blend between fixed points, and the tool follows them as the target attractor of RMPflow would: a
-spring that pulls with limited acceleration, and damping. Its other policies (joint posture, obstacles) are left out.
+Targets jump or blend between fixed points. The tool follows them as under the target attractor of RMPflow: a spring
+that pulls with limited acceleration, and damping. The other policies of RMPflow (joint posture, obstacles) are left
+out.
 The orientation of the tool is constant: straight down, fingers along the y axis of the robot's base.
 """
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 ABOVE, LOWER, SETTLE, CLOSE, LIFT, CROSS, LOWER_AT_GOAL, OPEN, RISE, BACK = range(10)
 FINGER_SPEED = 0.2
-"""Speed of one finger, m/s: the limit in the public URDF of the Panda's hand, which the experiment's simulator uses."""
+"""Speed (m/s) of one finger: the limit in the Panda hand's public URDF, which the experiment's simulator uses."""
 DOWN = np.diag([1.0, -1.0, -1.0])
 """Orientation of the tool in the frame of the robot's base."""
 
@@ -55,7 +56,7 @@ class TimedPickPlace:
         )
 
     def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
-        """Execute all phases. The goal is the middle of the first workspace that something in the scene carries."""
+        """Execute all phases. The goal is the middle of the first workspace that has a carrier in the scene."""
         goal = self._middle(workspaces) + self._times.offset
         self._emit("pick-start")
         part = self._part(name)
@@ -74,7 +75,7 @@ class TimedPickPlace:
         self._emit("place-end")
 
     def _progress(self, phase: int) -> Iterator[float]:
-        """Yield the blend of a phase, from 0 to 1, in each control tick; a phase takes at least one."""
+        """Yield the blend of a phase, from 0 to 1, in each control tick; a phase takes at least one tick."""
         ticks = max(1, round(1.0 / self._times.shares[phase] / STEPS_PER_SECOND / TICK))
         for tick in range(ticks):
             yield (1.0 - cos(pi * (tick + 1) / ticks)) / 2.0
@@ -100,7 +101,7 @@ class TimedPickPlace:
         return np.array([x, y, low + share * (high - low)])
 
     def _follow(self, target: FloatArray) -> None:
-        """Move the joints for one tick towards the tool's next position; where there is none, they stay."""
+        """Move the joints for one tick towards the tool's next position. If it is out of reach, they stay."""
         position, _ = self._arm.forward(self._joints)
         gap = self._from_base.T @ (target - self._base) - position
         pull = self._simulation.pace * self._speed * gap / (float(np.linalg.norm(gap)) + self._times.near)

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class TouchForces:
-    """Forces between each of some elements and the elements that it touches.
+    """Forces between each of the watched elements and the elements that it touches.
 
-    Per sample and pair: the largest force (N) since the previous sample, summed over the contacts of the pair. The
-    engine has no contacts between bodies that sleep, so these keep the forces of the last step in which one was awake.
+    A sample has, for each pair, the largest force (N) since the previous sample, summed over the pair's contacts. The
+    engine has no contacts between sleeping bodies, so these keep the forces of the last step in which one was awake.
     """
 
     def __init__(self, model: Any, watched: Iterable[str], objects: Iterable[str], robots: Iterable[str]) -> None:
@@ -35,7 +35,7 @@ class TouchForces:
         self._row = 0
 
     def restart(self) -> None:
-        """Delete all samples. What touches now counts for the first sample, too."""
+        """Delete all samples. Present contacts also count for the first sample."""
         self._rows.clear()
         self._row = 0
         self._note()

@@ -1,4 +1,4 @@
-"""Controller of two arms, one of which gives an object to the other at a place on a table."""
+"""Controller of two arms: one gives an object to the other at a place on a table."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class HandOver:
         self._emit = emit
 
     def hand_over(self, name: str) -> Step:
-        """Hand over an object that the giver holds, or else picks before; raises ``BehaviourError``."""
+        """Hand over an object; the giver picks it first if it does not hold it. Raises ``BehaviourError``."""
         self._emit("hand-over-start")
         if self._giver.held != name:
             yield from self._receiver.park()
@@ -41,7 +41,7 @@ class HandOver:
         self._emit("hand-over-end")
 
     def _is_in_reach(self, target: Target, grasp: Grasp) -> bool:
-        """Return whether the receiver reaches an object at a place, for some direction of its fingers."""
+        """Return whether the receiver reaches an object at a place with some direction of its fingers."""
         robot, arm = self._receiver.robot, self._receiver.arm
         place = np.add(target.position, (0.0, 0.0, grasp.below))
         for step in range(ROUND):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SPACING = 0.02
 """Distance (m) between the points of a path that are examined."""
 UPRIGHT = 0.999
-"""Cosine of the tilt up to which a shape's own frame is used, else the box around it in the world's axes."""
+"""A shape's own frame is used from this cosine of its tilt on, else the box around it along the world's axes."""
 
 
 def height_over(simulation: Simulation, robot: Robot, name: str, start: ToolPose, goal: ToolPose) -> float:
@@ -46,7 +46,7 @@ def _points(robot: Robot, start: ToolPose, goal: ToolPose) -> Iterator[tuple[flo
 
 
 def _tops(simulation: Simulation, name: str, points: FloatArray, radius: float) -> Iterator[float]:
-    """Yield the heights (m) of the shapes of an object that are nearer to the path than a radius (m)."""
+    """Yield the heights (m) of those shapes of an object that are nearer to the path than ``radius`` (m)."""
     position, rotation = simulation.pose(name)
     upright = rotation[2, 2] > UPRIGHT
     turn = rotation[:2, :2] if upright else np.eye(2)
@@ -61,7 +61,7 @@ def _tops(simulation: Simulation, name: str, points: FloatArray, radius: float) 
 
 
 def _radius(simulation: Simulation, name: str) -> float:
-    """Return the radius (m) of the upright cylinder about an object's position that encloses it as it is now."""
+    """Return the radius (m) of the upright cylinder about an object's position that encloses its present pose."""
     _, rotation = simulation.pose(name)
     return max(
         hypot(*(rotation @ np.array(point))[:2]) + radius

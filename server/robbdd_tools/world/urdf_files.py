@@ -1,4 +1,4 @@
-"""URDF files as their authors ship them: meshes of packages, missing visual meshes, unexpanded xacro."""
+"""Read URDF files as their authors ship them: meshes of packages, missing visual meshes, unexpanded xacro."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robbdd_tools.world.engine import mujoco
 READABLE = (".stl", ".obj", ".msh")
 """Mesh formats that the engine reads."""
 ROUNDED = 1e-9
-"""Share of the largest moment up to which rounding explains that it exceeds the others."""
+"""The largest moment may exceed the sum of the others by this share of itself, because files round."""
 HIDDEN = 3
 """Group of geoms that pictures leave out."""
 
@@ -32,8 +32,8 @@ def is_urdf(path: Path) -> bool:
 def read_urdf(path: Path) -> Any:
     """Return the engine's editable description of a URDF file. Raises ``ValueError``.
 
-    Visual shapes are kept, except for meshes that are missing or that the engine cannot read. Each of the collision
-    meshes must be there.
+    Visual shapes are kept, except meshes that are missing or that the engine cannot read. All collision meshes must
+    exist.
     """
     root = ElementTree.fromstring(source_xml(path))
     if path.suffix == ".xacro" or any("xacro" in element.tag for element in root.iter()):
@@ -62,14 +62,14 @@ def speeds(path: Path) -> dict[str, float]:
         root = ElementTree.fromstring(source_xml(path))
     except ElementTree.ParseError:
         return {}
-    # Elements 'joint' of transmissions have the names of joints, too, but no limits.
+    # Transmissions have elements 'joint', too, with the names of joints but without limits.
     joints = root.findall("joint") if root.tag == "robot" else ()
     found = {joint.get("name", ""): joint.find("limit") for joint in joints}
     return {name: float(limit.get("velocity", 0.0)) for name, limit in found.items() if limit is not None}
 
 
 def impossible_inertias(path: Path) -> Iterator[str]:
-    """Yield the links of a URDF file with an inertia that no body can have: one principal moment exceeds the others.
+    """Yield the links of a URDF file with an impossible inertia: one principal moment exceeds the sum of the others.
 
     The engine replaces the three principal moments of such a link by their mean.
     """
@@ -88,7 +88,7 @@ def impossible_inertias(path: Path) -> Iterator[str]:
 
 
 def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element) -> None:
-    """Replace a mesh's address by its path, or remove the shape if it is only seen. Raises ``ValueError``."""
+    """Replace a mesh's address by its path, or remove an unusable visual shape. Raises ``ValueError``."""
     mesh = shape.find("geometry/mesh")
     if mesh is None:
         return

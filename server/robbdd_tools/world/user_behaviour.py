@@ -94,7 +94,7 @@ class AgentWorld:
         return np.array([self._simulation.joint_of(opening.part)])
 
     def force(self, first: str, second: str) -> float:
-        """Return the contact forces (N) between two elements; raises ``KeyError``, and without physics, too."""
+        """Return the contact force (N) of two elements; raises ``KeyError``, or ``SimulationError`` without physics."""
         for name in (first, second):
             self._known(name, (*self._simulation.world.cast.objects, *self._simulation.robots))
         return self._simulation.contact_force(first, second)
@@ -142,7 +142,7 @@ class AgentWorld:
         return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ turn
 
     def _from_here(self, place: FloatArray, rotation: FloatArray) -> FloatArray | None:
-        """Return a solution near the present posture: for tools that do not point down, home may be far away."""
+        """Return a solution near the present posture: if a tool does not point down, home may be far away."""
         try:
             return self._arm.solve(self.joints, place, rotation)
         except BehaviourError:
@@ -170,7 +170,7 @@ def run_user_behaviour(
 ) -> Iterator[None]:
     """Yield once per control tick until the behaviour is over.
 
-    Raises ``BehaviourError`` if it reports failure, and ``UserError`` for any other exception in it.
+    Raises ``BehaviourError`` if the behaviour reports failure, and ``UserError`` for any other exception in it.
     """
     name = implementation.name
     model = "" if implementation.origin is None else implementation.origin.file

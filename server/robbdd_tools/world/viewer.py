@@ -17,7 +17,7 @@ class NoViewer(Exception):
 
 
 class Viewer:
-    """A window on a simulation; its user may turn the camera. Raises ``NoViewer``.
+    """A window that shows a simulation; the user may turn the camera. Raises ``NoViewer``.
 
     The simulation runs in real time while the window is open, and at full speed once the user has closed it.
     """
@@ -26,7 +26,7 @@ class Viewer:
         try:
             launch: Any = import_module("mujoco.viewer").launch_passive
             self._window: Any = launch(simulation.model, simulation.data, show_left_ui=False, show_right_ui=False)
-        except Exception as error:  # the window system's failures have many types
+        except Exception as error:  # failures of window systems have many types
             raise NoViewer(f"no window can be opened: {error}") from error
         self._due = perf_counter()
         self._watchers = simulation.watchers

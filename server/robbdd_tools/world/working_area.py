@@ -1,4 +1,4 @@
-"""The part of a table at which an arm works, and where a mobile base stands at one."""
+"""Find the part of a table at which an arm works, and the place of a mobile base at a table."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.settings import Numbers
 
 NEAREST = 0.30
-"""Distance (m) of a mobile base's axis from the side of a workspace at which it stands, if there is room."""
+"""If there is room, a mobile base's axis is this far (m) from the side of a workspace at which it works."""
 
 
 def field_before(
@@ -23,7 +23,7 @@ def field_before(
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
     """Return centre and half edges (m) of the part of a table in front of a robot's base, ``None`` if there is none.
 
-    ``area`` (m) is ahead of the base from, to; to its left from, to.
+    ``area`` (m) has four limits relative to the base: nearest and farthest ahead, lowest and highest to its left.
     """
     if model.region is None:
         return None
@@ -42,7 +42,7 @@ def field_before(
 def _field_before_end(
     base: Pose, table: Pose, region: Region, area: Numbers
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the same for a base beyond the left or right end of a table, whose forward direction is along y."""
+    """Do the same for a base beyond the left or right end of a table, which faces along the y axis."""
     side = 1.0 if table.position[1] >= base.position[1] else -1.0
     (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
     y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
@@ -65,7 +65,7 @@ def side_of(rotation: FloatArray, region: Region, side: int) -> tuple[FloatArray
 
 
 def place_before(base: Pose, table: Pose, model: ObjectModel) -> Pose:
-    """Return where a mobile base will stand at a table: in front of the middle of the side nearest to where it is."""
+    """Return where a mobile base will stand at a table: in front of the middle of the side nearest to it now."""
     assert model.region is not None, "only tables with a workspace are in front of a robot"
     turn = np.array([[np.cos(table.yaw), -np.sin(table.yaw)], [np.sin(table.yaw), np.cos(table.yaw)]])
     middle = np.array(table.at(model.region.center).position[:2])
