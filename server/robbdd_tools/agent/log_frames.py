@@ -144,7 +144,7 @@ class Frames:
     def _base_frames(self, stated: Mapping[str, str], asked: Collection[str]) -> dict[str, str]:
         """Return the frames of the bases: stated frames, and frames with the names that drivers of an arm use.
 
-        A remark names each agent of ``asked`` for which no base is found.
+        A remark names each agent of ``asked`` without a base.
         """
         frames = {*self._tracks, *(track.parent for track in self._tracks.values())}
         found: dict[str, str] = {}

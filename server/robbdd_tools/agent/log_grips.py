@@ -55,7 +55,7 @@ class LogGrips:
         times: FloatArray,
         poses: Mapping[str, tuple[FloatArray, FloatArray]],
     ) -> dict[str, FloatArray]:
-        """Return, for each agent with known grips, what it holds at ``times`` (n,), shape (n, len(names)).
+        """Return the grips of each agent with known grips at ``times`` (n,): 1 for a held body, shape (n, len(names)).
 
         All signals of an agent must agree that it holds something. A signal may name its object. Otherwise, the object
         is the one at whose surface the tool is; if there are several, it is unknown which one.

@@ -55,7 +55,8 @@ class Slot:
 class Region:
     """An axis-aligned box in the frame of the object that carries a workspace.
 
-    ``center`` and ``half`` (half edges) in m. A bin's is its inside, ``walled``. ``name`` is that of a shelf's board.
+    ``center`` and ``half`` (half edges) are in m. The region of a bin is its inside and is ``walled``. ``name`` is the
+    name of a part, such as a shelf's board.
     """
 
     center: Vector
@@ -65,7 +66,7 @@ class Region:
 
 
 Outline = tuple[tuple[Vector, float], ...]
-"""Balls (centre and radius, m, in the object's frame) inscribed in an object that touch each of its sides."""
+"""Balls (centre and radius, m, object's frame) inscribed in an object, such that they touch each of its sides."""
 
 
 class Evidence(Protocol):
@@ -89,27 +90,27 @@ class Evidence(Protocol):
         ...
 
     def velocity(self, name: str) -> FloatArray:
-        """Mean velocity of that position since the previous sample, m/s, shape (n, 3)."""
+        """Return the mean velocity of the position of ``name`` since the previous sample, m/s, shape (n, 3)."""
         ...
 
     def turning(self, name: str) -> FloatArray:
-        """Mean angular speed since the previous sample, rad/s, shape (n,)."""
+        """Return the mean angular speed since the previous sample, rad/s, shape (n,)."""
         ...
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Position at the last sample, in the window or before it, at or before each of ``times`` (n,), (n, 3)."""
+        """Return the position at the last sample up to each of ``times`` (n,), even before the window, (n, 3)."""
         ...
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Orientation at the last sample at or before each of ``times`` (n,), (n, 4)."""
+        """Return the orientation at the last sample up to each of ``times`` (n,), shape (n, 4)."""
         ...
 
     def outline(self, name: str) -> Outline:
-        """Extent of an object around its position."""
+        """Return the extent of an object around its position."""
         ...
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """Return the regions of the objects that carry a workspace, each with the object in whose frame it is given."""
+        """Return the regions of a workspace, each with the object in whose frame the region is given."""
         ...
 
     def contents(self, workspace: str) -> Sequence[str]:
@@ -130,15 +131,18 @@ class Evidence(Protocol):
         ...
 
     def reach(self, agent: str, name: str) -> FloatArray:
-        """Joint-limit distance (rad) of the agent's best clear grasp of the object, -π without one, shape (n,)."""
+        """Return how far (rad) an agent's best clear grasp of an object is from joint limits, -π without one, (n,)."""
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest contact force (N) with an agent, or with what it grips less its weight, since the previous sample."""
+        """Return the largest contact force (N) with an agent since the previous sample, shape (n,).
+
+        Forces on a gripped object count, too, less the object's weight.
+        """
         ...
 
     def touch(self, one: str, other: str) -> FloatArray:
-        """Largest contact force (N) since the previous sample, shape (n,), without what an agent grips."""
+        """Return the largest contact force (N) since the previous sample, without objects that an agent grips, (n,)."""
         ...
 
     def gap(self, one: str, other: str) -> FloatArray:
@@ -146,7 +150,7 @@ class Evidence(Protocol):
         ...
 
     def joint_clearance(self, agent: str) -> FloatArray:
-        """Return how far the joint that is nearest to a limit is from it, as a share of its range, shape (n,)."""
+        """Return the smallest distance of a joint from its limits, as a share of the joint's range, shape (n,)."""
         ...
 
     def opening(self, name: str) -> OpeningRecord:
@@ -154,7 +158,7 @@ class Evidence(Protocol):
         ...
 
     def is_immovable(self, name: str) -> bool:
-        """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
+        """Return whether an element does not move when it is hit. Fixed objects and agents are immovable."""
         ...
 
     def setting(self, target: str, name: str) -> str:
@@ -172,16 +176,16 @@ class Evidence(Protocol):
 
 
 Arguments = Mapping[str, str | tuple[str, ...]]
-"""Slot name → name of the element (or names of the set's elements) that fills it."""
+"""Slot name → name of the element that fills the slot, or names of the elements of the set."""
 
 Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
-"""Signed margin of the predicate at each sample, in the predicate's unit, positive where it holds, shape (n,)."""
+"""Returns the signed margin at each sample, in the predicate's unit, positive where it holds, shape (n,)."""
 
 UnitChoice = Callable[[Evidence, Arguments], str]
-"""Unit of a predicate's margin, if it depends on configuration or on the unit of a quantity in the clause."""
+"""Returns the unit of a predicate's margin if it depends on configuration or on a quantity's unit in the clause."""
 
 DurationMargin = Callable[[float, Arguments], float]
-"""Signed margin of a predicate about a duration (s), in the predicate's unit."""
+"""Returns the signed margin of a predicate about a duration (s), in the predicate's unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,12 +196,13 @@ class Predicate:
       number with a unit, or a variable) or as words. ``aliases`` are other forms with the same meaning and slots.
     - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
     - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.
-    - ``evaluate``: ``None`` if this installation cannot judge the predicate: its clauses are *unknown*, and never pass.
-    - ``quantities``: what the evaluator needs besides poses and grips (``reach``); sampled in its windows only.
-    - ``duration``: of a predicate about the time between the events of ``from … until …``: ``evaluate`` is for plots.
+    - ``evaluate``: the evaluator; ``None`` if this installation has none. Then clauses are *unknown*, and never pass.
+    - ``quantities``: what the evaluator needs besides poses and grips (``reach``); they are only sampled in its
+      windows.
+    - ``duration``: judges the time between the events of ``from … until …``; ``evaluate`` is then only for plots.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
-    - ``synonyms``: words that users write for it; the message on such an error names the predicate.
+    - ``synonyms``: wrong words that users write for it; the error message then names the predicate.
     """
 
     name: str
@@ -237,13 +242,13 @@ class Behaviour:
 
 @dataclass(frozen=True, slots=True)
 class ObjectModel:
-    """A kind of object in the simulated world: for objects whose name, or that of their set, has one of ``prefixes``.
+    """A kind of object in the simulated world, for objects with one of ``prefixes`` in their name or their set's name.
 
     - ``mass``: in kg; ``friction``: the coefficient of sliding friction.
     - ``free``: true if the object can move, for example a bin that can be pushed. Other objects are fixed.
     - ``graspable``: true if the object fits into a gripper. It is placed at random unless the scene places it.
     - ``rest_height``: the height (m) of its origin above the surface below; ``region``: the workspace that it carries.
-    - ``color``: RGBA in [0, 1]; ``bystander``: true if an agent may be one, too, which executes nothing: a person.
+    - ``color``: RGBA in [0, 1]; ``bystander``: true if an agent that executes nothing may have the model: a person.
     """
 
     name: str
@@ -262,11 +267,11 @@ class ObjectModel:
     parts: tuple[Region, ...] = ()
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
     inertia: Inertia | None = None
-    """How its mass is distributed, if it is not evenly in its shapes."""
+    """The distribution of its mass, if this is not uniform in its shapes."""
     frame: Vector = (0.0, 0.0, 0.0)
-    """Position (m) of the frame that poses in a scene refer to: the body frame of its file."""
+    """Position (m) of the frame to which poses in a scene refer: the body frame of its file."""
     joint: PassiveJoint | None = None
-    """The joint of a moving part of another object, such as a drawer; such a part is not ``free``."""
+    """The joint, if this is a moving part of another object, such as a drawer. Moving parts are not ``free``."""
     moving: ObjectModel | None = None
     """The moving part that this object carries, with its joint."""
     bystander: bool = False
@@ -274,7 +279,8 @@ class ObjectModel:
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries.
 
-        These are the parts whose name its name contains (``shelf_upper``), else all parts, else the whole region.
+        If the workspace's name contains names of parts (``shelf_upper``), return these parts, else all parts, else
+        ``region``.
         """
         named = tuple(part for part in self.parts if part.name in workspace.lower())
         return named or self.parts or (() if self.region is None else (self.region,))
@@ -289,7 +295,7 @@ class GripperKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RobotModel:
-    """A robot arm with its tool, for agents whose name, or that of their set, contains one of ``prefixes``.
+    """A robot arm with its tool, for agents with one of ``prefixes`` in their name or their set's name.
 
     - ``mjcf``: a model file in the folder of the catalog file.
     - ``home``: the initial joint positions (rad).
@@ -318,17 +324,17 @@ class RobotModel:
     doc: str
     source: str
     tool_speed: float = 0.5
-    """Largest speed of the tool along a planned path, m/s (paper: typically reached by the Panda)."""
+    """Largest speed (m/s) of the tool along a planned path (paper: typically reached by the Panda)."""
     approach_speed: float | None = None
-    """Largest speed of the tool while it descends to an object or lowers one, m/s; ``None``: ``tool_speed``."""
+    """Largest speed (m/s) of the tool while it descends to an object or lowers one; ``None`` means ``tool_speed``."""
     travel_height: float = 0.30
-    """Height in the world frame at which the tool travels, m (paper)."""
+    """Height (m, world frame) at which the tool travels (paper)."""
     carry_clearance: float = 0.0
-    """Room (m) between a carried object and everything below its path, for which the tool travels higher; 0: none."""
+    """The tool travels so high that a carried object clears everything below its path by this (m); 0: no clearance."""
     grip_time: float = 0.16
-    """How long the agent checks a grip before the arm moves, s."""
+    """The agent checks a grip for this time (s) before the arm moves."""
     release_time: float = 0.32
-    """How long the open gripper waits before it retracts, s."""
+    """The open gripper waits for this time (s) before it retracts."""
     tilt: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
-    """Rotation (w, x, y, z) of the arm from its upright base: that of an arm that hangs or leans."""
+    """Rotation (w, x, y, z) of an arm that hangs or leans, relative to its upright base."""
     gripper: GripperKind = GripperKind.PARALLEL

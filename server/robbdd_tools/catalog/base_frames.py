@@ -13,4 +13,4 @@ BASE_FRAMES: Mapping[str, tuple[str, ...]] = {
     "ur10": ("base_link",),
     "kinova-gen3": ("base_link",),
 }
-"""Robot of the catalog → names of the frame of its base, by franka_description, ur_description, kortex_description."""
+"""Catalog robot → names of its base frame in franka_description, ur_description and kortex_description."""

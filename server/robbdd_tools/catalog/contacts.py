@@ -10,16 +10,16 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
 
 TOUCH = "touch"
-"""The quantity that the predicates about touching need: contact forces, which are recorded on demand."""
+"""Name of the quantity of the predicates about touching: contact forces, which are recorded on demand."""
 FAINTEST = 0.01
-"""Contact force (N) from which two elements touch: the weight of one gram. Weaker forces are noise of the solver."""
+"""Two elements touch from this contact force (N) on, the weight of one gram. Weaker forces are noise of the solver."""
 
 
 def contact_force(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return the largest contact force (N) between the elements ``one`` and ``other`` since the previous sample, (n,).
 
-    A workspace is represented by the objects that carry it. What an agent grips is not part of it.
-    Raises ``KeyError`` if the forces of some pair were not recorded.
+    The objects that carry a workspace represent it. Objects that an agent grips are no part of the agent. Raises
+    ``KeyError`` if the forces of some pair were not recorded.
     """
     import numpy as np
 

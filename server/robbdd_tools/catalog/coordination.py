@@ -1,4 +1,4 @@
-"""Behaviour trees to be executed, as plain data: what each node does in one execution."""
+"""Behaviour trees to execute, as plain data: the work of each node in one execution."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ START, END = "start", "end"
 """Events that a node emits at its first tick, and on success."""
 
 EXTERNAL = "external"
-"""Emitter of an event of the environment, such as an operator's. Nothing simulates it; a log may report it."""
+"""Emitter of an event of the environment, such as an operator's action. Not simulated; a log may report it."""
 
 DEFINED = "defined"
 """Emitter of an event that a template defines by conditions. It is found in the trace."""
 
 
 _SEVERAL = " | "
-"""Between the emitters of one event; an IRI contains no space."""
+"""Separator of the emitters of one event; an IRI contains no space."""
 
 
 def emitter(node: str, event: str) -> str:
@@ -46,7 +46,7 @@ class NodeSpec:
     - ``kind``: ``sequence``, ``selector`` or ``leaf``.
     - ``behaviour``: the catalog name of the behaviour that a leaf executes.
     - ``arguments``: maps each slot of that behaviour to a CURIE, or to several CURIEs for a place.
-    - ``problem``: the reason if the leaf cannot execute it.
+    - ``problem``: the reason if the leaf cannot execute the behaviour.
     """
 
     iri: str
@@ -71,7 +71,7 @@ class TreeSpec:
 
     - ``name``: identifies the execution within a run.
     - ``tree``: the IRI of the tree.
-    - ``nodes``: the root alone or, if Python code (``source``) creates the tree, the expected nodes.
+    - ``nodes``: only the root or, if Python code (``source``) creates the tree, the expected nodes.
     - ``lead`` and ``tail``: the time (s) to record before the tree starts and after it ends.
     """
 

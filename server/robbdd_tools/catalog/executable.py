@@ -77,7 +77,7 @@ class Implementation:
     - ``name``: the name of the catalog behaviour, the Python code, the command line, the address or the ROS action.
     - ``origin``: its source position; ``None`` for a graph without source text.
     - ``replaced``: the implementation in the model, if a run executes a catalog behaviour instead.
-    - ``limit``: the time (s) within which a process or an endpoint answers; ``None`` if the model gives none.
+    - ``limit``: a process or an endpoint must answer within this time (s); ``None`` if the model gives no limit.
     """
 
     iri: str
@@ -94,12 +94,12 @@ class Implementation:
 
     @property
     def is_users(self) -> bool:
-        """Whether code of users executes the behaviours: in this process, in another one, or on another machine."""
+        """Whether users' code executes the behaviours: in this process, in another process, or on another machine."""
         return self.kind in USERS_KINDS
 
     @property
     def substitution(self) -> Substitution | None:
-        """The substitution; ``None`` if the implementation is the one that the model states."""
+        """The substitution; ``None`` if the model states this implementation."""
         return Substitution(self.iri, self.replaced, self.name) if self.replaced else None
 
 
@@ -187,7 +187,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class ArmModel:
-    """Data about an arm that replace those found in its model file. Names are those in the file.
+    """Data about an arm that replace data found in its model file. Names are as in the file.
 
     Empty names, ``None`` and zeros mean that the file decides. ``open`` and ``closed`` are values of the gripper's
     actuator. ``stroke`` (m) is the widest opening between the ``pads``, or the diameter of a suction cup, which is a
@@ -214,10 +214,10 @@ class ModelEntry:
 
 @dataclass(frozen=True, slots=True)
 class OpeningModel:
-    """Data about a thing that opens, which replace those found in its model file.
+    """Data about a thing that opens, which replace data found in its model file.
 
-    ``joint`` is a name in the file. ``closed`` and ``open`` are quantities (``5 mm``): the joint positions up to which
-    and from which the thing counts as closed and as open. Empty texts mean that the file decides.
+    ``joint`` is a name in the file. The thing counts as closed up to the joint position ``closed``, and as open from
+    the joint position ``open`` on; both are quantities (``5 mm``). Empty texts mean that the file decides.
     """
 
     joint: str = ""
@@ -260,7 +260,7 @@ class Realisation:
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """The coefficient of sliding friction between two elements, instead of the smaller one of their own."""
+    """The coefficient of sliding friction between two elements; it replaces the smaller of their own coefficients."""
 
     first: str
     second: str

@@ -1,4 +1,4 @@
-"""Words that other packages add by entry points. A faulty one is left out, so that it disturbs no model without it."""
+"""Words that other packages add by entry points. A faulty word is left out, so that models without it still work."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ _IN_SENTENCE = re.compile(r"\{(\w+)\}")
 
 
 class _Fault(Exception):
-    """Why a word cannot be used."""
+    """A word cannot be used; the message gives the reason."""
 
 
 def foreign_words(
     entries: Iterable[EntryPoint], own: Iterable[tuple[str, Word]]
 ) -> tuple[list[tuple[str, Word]], list[str]]:
-    """Return the words of entry points with their origins, and for each word that is left out a message.
+    """Return the words of entry points with their origins, and a message for each word that is left out.
 
-    ``own`` are the words of this package with their origins. They win over words with the same name or phrase.
+    ``own`` are the words of this package with their origins. They take precedence over words with equal names or
+    phrases.
     """
     taken, found, problems = list(own), list[tuple[str, Word]](), list[str]()
     for entry in sorted(entries, key=lambda entry: (entry.name, entry.value)):

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 GAP = "gap"
-"""The quantity that the predicate about gaps needs: distances of surfaces, which are measured on demand."""
+"""Name of the quantity of the predicate about gaps: distances of surfaces, which are measured on demand."""
 CONTACT = 1e-3
-"""Depth (m) to which an object at rest may penetrate its support: the simulation keeps settled contacts below it."""
+"""An object at rest may penetrate its support this deep (m): settled contacts of the simulation stay below it."""
 
 
 def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) -> FloatArray:
@@ -41,8 +41,8 @@ def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> 
 def cross(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return the cross products of vectors (n, 3).
 
-    The result has the bits of ``numpy.cross``, which spends most of its time on general shapes: half of the time that
-    is needed to judge where an object is.
+    The result is bit-identical to ``numpy.cross``, which spends most of its time on general shapes: half of the time of
+    judging where an object is.
     """
     import numpy as np
 
@@ -56,13 +56,13 @@ def cross(first: FloatArray, second: FloatArray) -> FloatArray:
 def inside_margin(
     evidence: Evidence, name: str, workspaces: Iterable[str], outline: Outline | None = None
 ) -> FloatArray:
-    """Distance (m) from a body to the nearest face of the space of some workspaces, positive inside, shape (n,).
+    """Return the distance (m) from a body to the nearest face of some workspaces' space, positive inside, shape (n,).
 
     The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, minus
     the parts that are inside other regions with a higher floor: an object on a shelf is on the shelf, not on the table
-    below. The body's position counts; with an ``outline``, or with the configuration ``whole_object``, its whole
-    outline does, except at the lowest face, which carries it. Regions that the body itself carries are ignored. Raises
-    ``KeyError`` for a workspace without regions, or with the body's own only.
+    below. The body's position counts. With an ``outline`` or the configuration ``whole_object``, its whole outline
+    counts, except at the lowest face, which carries the body. Regions that the body itself carries are ignored. Raises
+    ``KeyError`` for a workspace without regions other than the body's own.
     """
     import numpy as np
 
@@ -180,7 +180,7 @@ def carriers_of(evidence: Evidence, target: str) -> list[str]:
 def distance_between(evidence: Evidence, one: str, other: str) -> FloatArray:
     """Return the distance (m) of the positions of two elements at each sample, shape (n,).
 
-    A workspace is represented by the objects that carry it; the nearest counts.
+    The objects that carry a workspace represent it; the nearest object counts.
     """
     import numpy as np
 
@@ -191,7 +191,7 @@ def distance_between(evidence: Evidence, one: str, other: str) -> FloatArray:
 def only_position(evidence: Evidence, target: str) -> FloatArray:
     """Return the position of an element, or of the object that carries a workspace, m, shape (n, 3).
 
-    Raises ``KeyError`` if several objects carry the workspace: none of them is its place.
+    Raises ``KeyError`` if several objects carry the workspace, because it then has no single position.
     """
     carriers = list(dict.fromkeys(carriers_of(evidence, target)))
     if len(carriers) != 1:
@@ -210,7 +210,7 @@ def distance_from_segment(point: FloatArray, start: FloatArray, end: FloatArray)
 
 
 def path_length(positions: FloatArray) -> FloatArray:
-    """Distance (m) travelled along positions (n, 3) up to each sample, shape (n,), starting at 0."""
+    """Return the distance (m) travelled along positions (n, 3) up to each sample, shape (n,), starting at 0."""
     import numpy as np
 
     steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
@@ -218,15 +218,15 @@ def path_length(positions: FloatArray) -> FloatArray:
 
 
 def _outside(local: FloatArray, region: Region) -> FloatArray:
-    """Overhang of points (n, 3) of a region's frame beyond each pair of its faces, m, negative inside, (n, 3)."""
+    """Return how far (m) points (n, 3) in a region's frame are beyond each pair of faces, negative inside, (n, 3)."""
     import numpy as np
 
     return np.abs(local - np.asarray(region.center)) - np.asarray(region.half)
 
 
 def _signed_distance(outside: FloatArray) -> FloatArray:
-    """Margin of points from their overhang beyond each pair of faces (n, 3): positive inside, Euclidean distance
-    outside."""
+    """Return the margin (m) of points from how far they are beyond each pair of faces (n, 3): positive inside, the
+    negative Euclidean distance outside."""
     import numpy as np
 
     beyond = np.linalg.norm(np.maximum(outside, 0.0), axis=1)

@@ -1,4 +1,4 @@
-"""The configurations (``has config``) that an element can have, by its kind and an object's model."""
+"""The configurations (``has config``) that an element can have, by its kind and, for objects, by its model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recognize free text of ``pred("…")`` that says the same as a predicate's phrase, word by word."""
+"""Recognize free text of ``pred("…")`` that has the same words as a predicate's phrase."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _SLOT = re.compile(r"<([\w-]+)>|#([\w-]+)")
 
 
 def predicate_in_text(template: str, names: Collection[str]) -> tuple[Predicate, Mapping[str, str]] | None:
-    """Return the predicate whose phrase a text says, and the text's placeholder for each of its slots.
+    """Return the predicate whose phrase has the words of a text, and the text's placeholder for each of its slots.
 
-    ``{a} is correct for {b}`` says ``<workspace> is correct for <object>``. Quotes around placeholders and the width of
-    blanks do not matter. Phrases that set something up, or have names or values without a unit, are not recognized, nor
-    is a text with a placeholder that is not among ``names``.
+    ``{a} is correct for {b}`` matches ``<workspace> is correct for <object>``. Quotes around placeholders and the width
+    of blanks do not matter. Not recognized are phrases that set something up or have names or values without a unit,
+    and texts with a placeholder that is not among ``names``.
     """
     words = " ".join(_PLACEHOLDER.sub("{}", template).split())
     found = _phrases().get(words)
@@ -51,7 +51,7 @@ def accepts(kind: Kind, element: str) -> bool:
 
 @cache
 def _phrases() -> Mapping[str, tuple[Predicate, tuple[str, ...]]]:
-    """Return each phrase with ``{}`` for its slots, with its predicate and the names of the slots in written order."""
+    """Map each phrase, with ``{}`` for its slots, to its predicate and the names of the slots in written order."""
     found: dict[str, tuple[Predicate, tuple[str, ...]]] = {}
     for predicate in load_catalog().predicates.values():
         if not {slot.kind for slot in predicate.slots} & {Kind.NAME, Kind.VALUE} and predicate.duration is None:

@@ -48,7 +48,7 @@ class Catalog:
     def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
         """Return the object model for a scene object by its name, else by the names of its ``sets``.
 
-        A person is the last choice: the table of an operator is a table.
+        A person is the last choice: an operator's table is a table.
         """
         names = (local_name, tuple(sets))
         things = {name: model for name, model in self.objects.items() if not model.bystander}
@@ -59,7 +59,7 @@ class Catalog:
         return _by_names(self.robots, local_name, sets)
 
     def bystander_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
-        """Return the object model for an agent that executes nothing, such as a person; by the same names."""
+        """Return the object model for an agent that executes nothing, such as a person, like ``robot_for``."""
         return _by_names(self.bystanders, local_name, sets)
 
     @property
@@ -69,7 +69,7 @@ class Catalog:
 
     @property
     def bystanders(self) -> Mapping[str, ObjectModel]:
-        """The object models that an agent may have, too."""
+        """The object models that agents may also have."""
         return {name: model for name, model in self.objects.items() if model.bystander}
 
 
@@ -134,8 +134,8 @@ def _by_name(models: Mapping[str, Model], name: str) -> Model | None:
 def _rank(prefix: str, words: list[str]) -> tuple[bool, bool, int] | None:
     """Return how well a model's prefix fits the words of a name, ``None`` if it does not.
 
-    Whole words rank first, then words at the beginning of the name, then longer ones. A part of a word counts only at
-    its beginning or end: a cabinet is not a bin.
+    Whole words rank first, then words at the beginning of the name, then longer words. A part of a word counts only at
+    the word's beginning or end: a cabinet is not a bin.
     """
     wanted = re.findall(r"[a-z]+|[0-9]+", prefix)
     count, joined = len(wanted), "".join(wanted)

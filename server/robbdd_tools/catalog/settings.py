@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 Numbers = tuple[float, ...]
-"""A value: one number, or the four of a range."""
+"""A value: one number, or the four numbers of a range."""
 
 
 class SettingError(ValueError):
@@ -19,7 +19,7 @@ class SettingError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One configuration: ``unit`` of its numbers, ``target`` (what it applies to), the bounds of each number.
+    """One configuration: the ``unit`` of its numbers, the ``target`` to which it applies, the bounds of each number.
 
     ``words`` are names for common values; ``count`` is how many numbers a value has; ``whole`` allows no fractions.
     ``judges`` is the kind of element (agent or object) if the configuration changes how an evaluator judges it instead
@@ -65,7 +65,7 @@ class Setting:
 
 NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
 DENSE: Numbers = (0.35, 0.60, -0.30, 0.30)
-"""Ranges of the paper's experiment, m: ahead of the robot from, to; to its left from, to."""
+"""Ranges (m) of the paper's experiment: nearest and farthest ahead of the robot, lowest and highest to its left."""
 YES_NO: tuple[tuple[str, Numbers], ...] = (("yes", (1.0,)), ("no", (0.0,)))
 _EVERY = (
     Setting(

@@ -1,4 +1,4 @@
-"""Standard places of the catalog's models if no executable scene places them, and how many objects have room."""
+"""Standard places of catalog models that no executable scene places, and how many objects have room."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, Vector
 
 SIDES = 4
-"""Sides of a table; one agent has room at each."""
+"""Number of sides of a table; one agent has room at each."""
 
 
 class NoRoom(ValueError):
@@ -46,7 +46,7 @@ def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: 
 
 
 def _half(model: ObjectModel) -> tuple[float, float]:
-    """Return half the edges (m) of the area that an object needs: that of its workspace, else that of its shapes."""
+    """Return half the edges (m) of the area that an object needs: its workspace's area, else the area of its shapes."""
     if model.region is not None:
         return model.region.half[:2]
     ends = [(shape.position, shape.size[0], shape.size[shape.kind is ShapeKind.BOX]) for shape in model.shapes]

@@ -1,4 +1,4 @@
-"""Prefixes of the terms that words of the language have in the graph."""
+"""Prefixes of the graph's terms for words of the language."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Timetable:
 
     @property
     def follow_speed(self) -> float:
-        """Speed of the tool at which it follows a target that is far away, m/s."""
+        """Speed (m/s) at which the tool follows a distant target."""
         return self.gain / self.damping
 
 
@@ -55,5 +55,5 @@ OTHERS = Timetable(
 
 
 def timetable_of(robot: str) -> Timetable:
-    """Return the timetable for a robot model of the catalog; all others have that of the general class."""
+    """Return the timetable for a robot model of the catalog; all other robots have that of the general class."""
     return {"franka-panda": PANDA, "ur10": UR10}.get(robot, OTHERS)

@@ -1,7 +1,7 @@
 """A predicate that is defined by others: their strong Kleene *and*, *or* and *not* at each sample.
 
-A time constraint applies to the whole: *throughout (a or b)* holds if at each sample a or b holds, not if one of them
-holds throughout.
+A time constraint applies to the whole definition: *throughout (a or b)* holds if a or b holds at each sample; neither
+of them needs to hold throughout.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ class CompoundEvaluator(Defined):
     def __call__(self, evidence: Evidence, arguments: Arguments) -> FloatArray:
         """Return the margin at each sample, shape (n,), in the unit of ``unit``; NaN where the truth is unknown.
 
-        Margins in several units cannot be compared: then it is 1 where the definition is true, and -1 where it is
-        false.
+        Margins in several units cannot be compared. In this case, the margin is 1 where the definition is true, and -1
+        where it is false.
         """
-        # Editors read definitions, too, and do not load numpy.
+        # Editors also read definitions, and do not load numpy.
         from robbdd_tools.monitor.compound_samples import plain_margins
 
         return plain_margins(self.samples(evidence, arguments), self.unit(evidence, arguments))
@@ -53,7 +53,7 @@ class CompoundEvaluator(Defined):
         return samples_of(self.definition, evidence, arguments)
 
     def unit(self, evidence: Evidence, arguments: Arguments) -> str:
-        """Return the unit of all margins; empty if they have several, or none."""
+        """Return the unit of all margins; empty if they have several units or none."""
         found = {unit_of(one, evidence, own) for one, own in leaves(self.definition, arguments)}
         dimensions = {dimension_of(unit) for unit in found}
         if len(dimensions) != 1:
@@ -63,7 +63,7 @@ class CompoundEvaluator(Defined):
 
 @dataclass(frozen=True, slots=True)
 class CompoundUnit:
-    """Chooses the unit of a definition's margins. It is equal to that of an equal definition."""
+    """Chooses the unit of a definition's margins. Choosers of equal definitions are equal."""
 
     evaluator: CompoundEvaluator
 
@@ -78,7 +78,7 @@ def definition_of(predicate: Predicate) -> Definition | None:
 
 
 def renamed(predicate: Predicate, name: Callable[[str], str]) -> Predicate:
-    """Return a named predicate whose elements have other names; a predicate of the catalog as it is."""
+    """Return a named predicate whose elements have other names; a predicate of the catalog is unchanged."""
 
     def within(definition: Definition) -> Definition:
         if isinstance(definition, Combination):
@@ -106,9 +106,9 @@ def elements_in(predicate: Predicate) -> Iterator[Element]:
 def required(
     predicate: Predicate, arguments: Mapping[str, Filled]
 ) -> Iterator[tuple[Predicate, dict[str, Filled | str]]]:
-    """Yield the predicates of the catalog that must hold for a predicate to hold, with what fills their slots.
+    """Yield the predicates of the catalog that must hold for a predicate to hold, with the fillers of their slots.
 
-    Those inside of *or* and *not* are left out.
+    Predicates inside *or* and *not* are left out.
     """
 
     def within(
@@ -176,7 +176,7 @@ def compound_predicate(name: str, sentence: str, parameters: tuple[str, ...], de
 
 
 def _slot(parameter: str, operands: tuple[Operand, ...]) -> Slot:
-    """Return the slot of a parameter: the most specific one that it fills."""
+    """Return the slot of a parameter: the most specific slot that it fills."""
     filled = [
         slot for one in operands for slot in one.predicate.slots if one.fillers.get(slot.name) == Passed(parameter)
     ]
@@ -185,7 +185,7 @@ def _slot(parameter: str, operands: tuple[Operand, ...]) -> Slot:
 
 
 Change = Callable[[Predicate, "Arguments", int], Predicate]
-"""Returns what replaces a predicate with its arguments; -1 inside of an odd number of negations, else 1."""
+"""Returns the replacement of a predicate with its arguments; the number is -1 in an odd number of negations, else 1."""
 
 
 def changed(predicate: Predicate, arguments: Arguments, change: Change) -> Predicate:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A predicate of the catalog in a definition: its words, its unit, and why it is unknown at all samples, if so."""
+    """A catalog predicate in a definition: its words, its unit, and the reason if it is unknown at all samples."""
 
     words: str
     unit: str
@@ -44,9 +44,9 @@ class Samples:
     """The truth at each of n samples.
 
     - ``truths``: 1 true, 0 unknown, -1 false, shape (n,).
-    - ``margins``: the margin of the predicate that decides, in its SI unit, shape (n,): its sign fits the truth; NaN
-      where the truth is unknown.
-    - ``deciding``: the number of this predicate in ``leaves``, shape (n,).
+    - ``margins``: the margin of the deciding predicate, in its SI unit, shape (n,). Its sign agrees with the truth; it
+      is NaN where the truth is unknown.
+    - ``deciding``: the number of the deciding predicate in ``leaves``, shape (n,).
     """
 
     truths: NDArray[np.int8]
@@ -55,11 +55,11 @@ class Samples:
     leaves: tuple[Leaf, ...]
 
     def leaf(self, row: int) -> Leaf:
-        """Return the predicate whose margin is that of the definition at a sample."""
+        """Return the predicate that gives the definition its margin at a sample."""
         return self.leaves[int(self.deciding[row])]
 
     def dimensions(self) -> NDArray[np.intp]:
-        """Return a number for what the deciding margin measures at each sample, shape (n,); -1 if it has no unit."""
+        """Return a number for the dimension of the deciding margin at each sample, shape (n,); -1 if it has no unit."""
         names = [dimension_of(leaf.unit) for leaf in self.leaves]
         numbers = [names.index(name) if name else -1 for name in names]
         return np.array(numbers, dtype=np.intp)[self.deciding]
@@ -109,9 +109,10 @@ class _Evaluation:
         return Samples(truths, np.full(size, np.nan), number, tuple(self.leaves))
 
     def _joined(self, one: Samples, other: Samples, sign: int) -> Samples:
-        """Join two operands by *and* (``sign`` 1) or *or* (-1). Where both decide, only like margins are compared.
+        """Join two operands by *and* (``sign`` 1) or *or* (-1).
 
-        A margin with a unit says more than one of ±1. Otherwise, the first operand in written order decides.
+        Where both decide, margins of one dimension are compared. A margin with a unit is preferred to a margin of ±1.
+        Otherwise, the first operand in written order decides.
         """
         leaves = tuple(self.leaves)
         one, other = replace(one, leaves=leaves), replace(other, leaves=leaves)
@@ -155,8 +156,8 @@ def judge_samples(
     """Judge a defined predicate at the samples of a window.
 
     ``times`` are the times of the samples, s, shape (n,). ``applies`` is the margin of the condition of ``whenever``,
-    shape (n,). ``closing`` and ``missing`` have the same meaning as in ``at_some_time``. The margin is that of the
-    predicate that decides, in its own unit: the smallest (at some time: the largest) one of this unit.
+    shape (n,). ``closing`` and ``missing`` have the same meaning as in ``at_some_time``. The margin of the verdict is
+    the deciding predicate's, in its own unit: the smallest margin in this unit, or the largest for *at some time*.
     """
     rows = np.ones(len(times), dtype=bool)
     if applies is not None:
@@ -186,7 +187,7 @@ def _explained(
     wanted = 1 if verdict.outcome is Outcome.HOLDS else -1
     deciding = rows & (samples.truths == wanted)
     dimensions = samples.dimensions()
-    # A margin of ±1 says less than one in a unit.
+    # Prefer a margin with a unit to a margin of ±1.
     measured = deciding & (dimensions >= 0)
     first = int(np.argmax(measured if np.any(measured) else deciding))
     like = deciding & (dimensions == dimensions[first])

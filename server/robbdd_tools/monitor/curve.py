@@ -22,7 +22,7 @@ POINTS = 400
 """Approximate number of points of a curve, enough for a screen. Longer curves are thinned; extremes and the deciding
 samples stay."""
 DIGITS = 6
-"""Decimals of plotted numbers."""
+"""Number of decimals of plotted numbers."""
 DIGIT = 10**-DIGITS
 
 
@@ -33,7 +33,7 @@ class Curve:
     - ``start`` and ``end``: the window of the fluent (s); ``None`` if it has none, because of ``reason``.
     - ``margins``: the margins in the SI unit ``unit`` at ``times`` (s). Both are empty without a recording.
     - ``negated``: true if the clause negates the fluent.
-    - ``some_time``: true if the fluent needs to hold at one sample of its window only: the largest margin decides.
+    - ``some_time``: true if the fluent needs to hold at only one sample of its window: the largest margin decides.
     """
 
     start: float | None = None
@@ -49,8 +49,8 @@ class Curve:
 def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margins) -> Curve:
     """Return the curve of a fluent, with its window and its points.
 
-    The points extend beyond the window only if the margin does not depend on the start of the window. The window of
-    *every* occurrence of an event is that of the occurrence with the smallest margin.
+    The points extend beyond the window only if the margin does not depend on the start of the window. For *every*
+    occurrence of an event, the window belongs to the occurrence with the smallest margin.
     """
     constraint = _decisive(constraint, trace, margins)
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
@@ -69,7 +69,7 @@ def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margi
 
 
 def _decisive(constraint: TimeConstraint, trace: Trace, margins: Margins) -> TimeConstraint:
-    """Return the time constraint of the occurrence that decides, if it names *every* occurrence."""
+    """Return the time constraint of the deciding occurrence, if ``constraint`` names *every* occurrence."""
     if isinstance(constraint, During) or constraint.which != "every":
         return constraint
     times = occurrence_times(constraint, trace)
@@ -107,7 +107,7 @@ def _extremes(margins: FloatArray) -> Iterator[int]:
 
 
 def _judged(found: Curve, times: FloatArray, margins: FloatArray) -> Iterator[int]:
-    """Yield the rows that decide the verdict: the window's first and last row, and that of the deciding margin."""
+    """Yield the rows that decide the verdict: the window's first and last row, and the row of the deciding margin."""
     if found.start is None or found.end is None:
         return
     first, after = np.searchsorted(times, [found.start - DIGIT, found.end + DIGIT]).tolist()

@@ -21,9 +21,9 @@ def judge_duration(
 ) -> Verdict:
     """Judge a predicate on the exact time between the two events of an interval.
 
-    A simulated execution that has finished without the second event shows that the duration is longer than the time
-    since the first event. The clause is violated if this is too long already, and unknown otherwise. A log may lack an
-    event that occurred.
+    If a simulated execution has finished without the second event, the duration is longer than the time since the first
+    event. The clause is violated if this time is already too long, and unknown otherwise. A log does not show this,
+    because it may lack an event that occurred.
     """
     if not isinstance(constraint, During) or constraint.some_time:
         return unknown(NOT_AN_INTERVAL, Cause.NO_STEP)

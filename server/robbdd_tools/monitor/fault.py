@@ -51,7 +51,7 @@ class Fault:
     def id(self) -> str:
         """The identifier of the error.
 
-        It is equal in all scenarios and processes, whatever values the message contains.
+        It is equal in all scenarios and processes, and does not depend on values in the message.
         """
         calls = [f"{frame.file}:{frame.line}" for frame in self.frames]
         return hashlib.sha256("\0".join((self.exception, self.code, self.origin, *calls)).encode()).hexdigest()[:12]

@@ -25,10 +25,10 @@ class JointEvaluator:
     def __call__(self, evidence: Evidence, arguments: Arguments) -> FloatArray:
         """Return the smallest margin at each sample, shape (n,).
 
-        The margins have different units, so only the sign has a meaning. It is NaN where a margin is not a number and
-        no other one is negative.
+        The margins have different units, so only the sign has a meaning. The result is NaN where a margin is NaN and no
+        other margin is negative.
         """
-        # Editors read conditions, too, and do not load numpy.
+        # Editors also read conditions, and do not load numpy.
         import numpy as np
 
         margins = np.stack([one.evaluate(evidence, own) for one, own in self.parts(arguments) if one.evaluate])
@@ -45,7 +45,7 @@ class JointEvaluator:
 
 
 def joint_predicate(predicates: Sequence[Predicate]) -> Predicate:
-    """Return the conjunction of predicates as one predicate; a single predicate as it is."""
+    """Return the conjunction of predicates as one predicate; a single predicate is unchanged."""
     if len(predicates) == 1:
         return predicates[0]
     numbered = list(enumerate(predicates, start=1))
@@ -58,14 +58,14 @@ def joint_predicate(predicates: Sequence[Predicate]) -> Predicate:
 
 
 def joint_arguments(arguments: Sequence[Mapping[str, Filler]]) -> Mapping[str, Filler]:
-    """Return the arguments of a conjunction of predicates, given those of each of them."""
+    """Return the arguments of a conjunction, given the arguments of each of its predicates."""
     if len(arguments) == 1:
         return arguments[0]
     return {f"{slot}-{number}": one for number, own in enumerate(arguments, 1) for slot, one in own.items()}
 
 
 def parts_of(predicate: Predicate, arguments: Mapping[str, Filler]) -> list[tuple[Predicate, Mapping[str, Filler]]]:
-    """Return the predicates of a conjunction with their arguments; a single predicate as it is."""
+    """Return the predicates of a conjunction with their arguments; a single predicate is unchanged."""
     if isinstance(predicate.evaluate, JointEvaluator):
         return list(predicate.evaluate.parts(arguments))
     return [(predicate, arguments)]

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 NOT_THROUGHOUT = "'whenever' needs a time constraint that says throughout, not 'at some time'"
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
-"""Workspace → its regions, each with the object whose frame it is in."""
+"""Workspace → its regions, each with the object in whose frame the region is given."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class WindowEvidence:
     def _observed(self, name: str, values: FloatArray, times: FloatArray) -> FloatArray:
         """Return the values (n, k) of an element at some times (n,). Raises ``Unobserved`` if a value is missing.
 
-        Only the trace of a log can lack values. A comparison with a missing value would be false without a word.
+        Only the trace of a log can lack values. A comparison with a missing value would silently be false.
         """
         if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
             unseen = np.isnan(self.trace.positions[:, self.trace.column(name)].sum(axis=1))
@@ -186,7 +186,7 @@ class WindowEvidence:
         return replace(record, positions=record.positions[self._rows])
 
     def is_immovable(self, name: str) -> bool:
-        """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
+        """Return whether an element does not move when it is hit. Fixed objects and agents are immovable."""
         need_contacts(self.trace.settings)
         return name in self.trace.immovable
 
@@ -272,8 +272,8 @@ def judge(
 ) -> Verdict:
     """Judge ``holds(predicate(arguments), constraint)``, ``whenever`` a condition holds if there is one.
 
-    ρ is the smallest margin in the window, or the largest if the predicate must hold at some time only: *holds* when
-    ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no window, no evaluator or no record of an argument.
+    ρ is the smallest margin in the window, or the largest if the predicate must hold only at some time. The verdict is
+    *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* without a window, an evaluator or a record of an argument.
     """
     if not isinstance(constraint, During) and constraint.which == "every" and not constraint.number:
         times = occurrence_times(constraint, trace)
@@ -336,9 +336,9 @@ def margins_of(predicate: Predicate, evidence: WindowEvidence, arguments: Argume
 def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> Range | None:
     """Return the range of a predicate's margin over all samples of a trace.
 
-    Returns ``None`` if the trace cannot show that the margin could vary. This is so without an evaluator or a record,
-    with fewer than two samples, for quantities that are measured only within windows, and for conditions that are set
-    up instead of observed.
+    Returns ``None`` if the trace cannot show that the margin could vary: without an evaluator or a record, with fewer
+    than two samples, for quantities that are measured only within windows, and for conditions that are set up instead
+    of observed.
     """
     if predicate.evaluate is None or predicate.quantities or predicate.set_up or len(trace.times) < 2:
         return None

@@ -4,4 +4,4 @@ It is separate from traces, so that an editor need not load numpy.
 """
 
 LAST = -1
-"""The last iteration: a behaviour tree may execute a node again, so that its number is not known."""
+"""The last iteration, whose number is unknown because a behaviour tree may execute a node again."""

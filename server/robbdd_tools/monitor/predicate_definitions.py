@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _SLOT = re.compile(r"\"?\{(\w+)\}\"?")
 LEAST = -2.2250738585072014e-308
-"""The margin of the negation of a predicate whose margin is 0: that predicate holds, so its negation does not."""
+"""If the margin of a predicate is 0, its negation has this margin: the predicate holds, so its negation does not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Passed:
 
 
 class Element(str):
-    """The IRI of an element in a definition, until it is shortened; as opposed to a value."""
+    """The IRI of an element in a definition, until it is shortened; a plain ``str`` is a value."""
 
     __slots__ = ()
 
@@ -38,7 +38,7 @@ class Operand:
     fillers: Mapping[str, Passed | str]
 
     def arguments(self, given: Arguments) -> Arguments:
-        """Return the arguments of the predicate. ``given`` are those of the predicate that it defines."""
+        """Return the arguments of the predicate, from the arguments ``given`` to the predicate that it defines."""
         return {
             slot: given[filler.parameter] if isinstance(filler, Passed) else filler
             for slot, filler in self.fillers.items()
@@ -47,7 +47,7 @@ class Operand:
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """Definitions that are joined by ``and`` or ``or``, or one that is negated."""
+    """Definitions that are joined by ``and`` or ``or``, or one negated definition."""
 
     operator: Literal["and", "or", "not"]
     operands: tuple[Definition, ...]
@@ -64,12 +64,12 @@ class Defined:
 
 
 def dimension_of(unit: str) -> str:
-    """Return what a unit measures; an unknown unit itself."""
+    """Return the dimension that a unit measures, or the unit itself if it is unknown."""
     return UNITS[unit][0] if unit in UNITS else unit
 
 
 def unit_of(predicate: Predicate, evidence: Evidence, arguments: Arguments) -> str:
-    """Return the unit of a predicate's margin; its usual one if that of the clause depends on missing evidence."""
+    """Return the unit of a predicate's margin in a clause, or its usual unit if evidence for the choice is missing."""
     if predicate.unit_for is None:
         return predicate.unit
     try:

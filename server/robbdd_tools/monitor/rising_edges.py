@@ -1,4 +1,4 @@
-"""Find when a condition becomes true in a trace: the occurrences of an event that is defined by it."""
+"""Find when a condition becomes true in a trace: these are the occurrences of the event that it defines."""
 
 from __future__ import annotations
 
@@ -31,10 +31,9 @@ class RisingEdges:
 def rising_edges(margins: FloatArray, times: FloatArray, seconds: float = 0.0) -> RisingEdges:
     """Return when a condition becomes true, from its margins at the samples of a trace, both of shape (n,).
 
-    It becomes true at a sample at which it holds while it does not hold at the sample before. If ``seconds`` is
-    positive, the time is that of the first sample at which it has held for so long without interruption. A margin that
-    is not a number is unknown: nothing is known to occur at such a sample, nor from the known sample before it until
-    the known sample after it.
+    It becomes true at a sample at which it holds if it did not hold at the previous sample. If ``seconds`` is positive,
+    the time is the first sample at which the condition has held for so long without interruption. A margin that is NaN
+    is unknown: no occurrence is known from the last known sample before it until the first known sample after it.
     """
     if not len(times):
         return RisingEdges((), (), False)

@@ -33,7 +33,7 @@ def at_some_time(
     """Return the verdict on a predicate that must hold at some sample.
 
     ``closing`` is the time (s) at which the window closes. ``missing`` is set if the trace lacks a part of the window.
-    Then, and if some margin is not a number, the verdict is unknown unless the predicate already holds at some sample.
+    In this case, and if some margin is NaN, the verdict is unknown unless the predicate holds at some sample.
     """
     finite = np.isfinite(margins)
     best = int(np.argmax(np.where(finite, margins, -np.inf)))
@@ -55,7 +55,7 @@ def whenever(margins: FloatArray, condition: FloatArray, times: FloatArray, unit
     """Return the verdict on a predicate that must hold at the samples at which a condition holds.
 
     ``condition`` are the margins of the condition, shape (n,). At each sample, the clause is the strong Kleene
-    implication of the condition and the predicate. A margin that is not a number is unknown.
+    implication of the condition and the predicate. A margin that is NaN is unknown.
     """
     known, held = np.isfinite(margins), np.isfinite(margins) & (margins >= 0)
     maybe = ~(np.isfinite(condition) & (condition < 0))

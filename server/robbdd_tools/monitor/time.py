@@ -1,4 +1,4 @@
-"""Time constraints of fluents, and the window of a trace that each one selects (paper, section on fluents)."""
+"""Time constraints of fluents, and the window of a trace that each constraint selects (paper, section on fluents)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
 TOLERANCE = 1e-9
-"""Seconds; sample times are sums of floating-point steps."""
+"""Tolerance (s) of times, because sample times are sums of floating-point steps."""
 
 
 OCCURRENCES = ("first", "last", "every")
@@ -28,7 +28,7 @@ class Before:
     predicate must hold at some sample of the window instead of at all of them.
 
     ``which`` is one of ``OCCURRENCES``, or empty. If it is set, it selects among all occurrences in the iterations
-    ``scope``, as in ``Trace.event_times``, and ``iteration`` does not count. ``number`` (from 1) is one occurrence of
+    ``scope``, as in ``Trace.event_times``, and ``iteration`` is ignored. ``number`` (from 1) is one occurrence of
     *every*.
     """
 
@@ -87,8 +87,8 @@ class NoWindow:
     """A constraint has no window; ``reason`` says why.
 
     ``open`` is true if a longer trace may still have the window. ``empty`` is true if the window is closed but contains
-    no sample. ``recorded`` are the samples of the window that the trace has, if the window reaches beyond the trace.
-    ``missing`` is the event that has not occurred, if that is the reason.
+    no sample. If the window extends beyond the trace, ``recorded`` are the samples of the window that the trace has. If
+    an event has not occurred, ``missing`` is this event.
     """
 
     reason: str
@@ -112,7 +112,7 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
             times = occurrence_times(constraint, trace)
             if isinstance(times, NoWindow):
                 return times
-            # The window of *every* occurrence is that of the first one; ``judge`` judges them one by one.
+            # For *every* occurrence, return the window of the first one; ``judge`` judges them one by one.
             time = times[max(constraint.number - 1, 0)]
             return (
                 _before(trace, constraint, time) if isinstance(constraint, Before) else _after(trace, constraint, time)
@@ -126,7 +126,7 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
 
 
 def occurrence_times(constraint: Before | After, trace: Trace) -> tuple[float, ...] | NoWindow:
-    """Return the times (s) of the occurrences of its event to which a time constraint refers; at least one."""
+    """Return the times (s) of the occurrences of the event to which a time constraint refers; at least one."""
     if not constraint.which:
         time = trace.event_time(constraint.event, constraint.iteration)
         missing = _missing(trace, constraint.event, constraint.iteration)
@@ -194,10 +194,10 @@ def in_iterations(
     """Return a time constraint with the occurrences of events to which a clause refers.
 
     ``iterations`` are the first and the last iteration of the clause's scope; empty if the clause is not in a loop. An
-    interval extends over the whole scope. Any other constraint of a Given or When clause (``role``) refers to the first
-    iteration, and that of a Then clause to the last one, unless it selects occurrences in the
-    scope itself (see "Occurrences" in ``docs/semantics.md``). ``emitting`` maps an event to the iterations in which it
-    is emitted, if these are not all: only they count for it, unless the scope contains none of them.
+    interval extends over the whole scope. Any other constraint refers to the first iteration in a Given or When clause
+    (``role``) and to the last iteration in a Then clause, unless the constraint itself selects occurrences in the scope
+    (see "Occurrences" in ``docs/semantics.md``). If an event is emitted only in some iterations, ``emitting`` maps it
+    to these iterations. Then only these count for it, unless the scope contains none of them.
     """
     if not iterations:
         return constraint
@@ -215,7 +215,7 @@ def in_iterations(
 
 
 def _pending(constraint: TimeConstraint, trace: Trace) -> NoWindow | None:
-    """Return the reason why a trace has no window yet: its last event may occur again."""
+    """Return the reason why a trace has no window yet: the event of a *last* occurrence may occur again."""
     for event, iteration in occurrences(constraint):
         if iteration == LAST and event in trace.pending:
             return _uncertain(trace, event)
@@ -228,7 +228,7 @@ def _uncertain(trace: Trace, event: str) -> NoWindow:
 
 
 def _doubtful(trace: Trace, event: str, scope: tuple[int, int], time: float | None) -> NoWindow | None:
-    """Return the reason why the time of an event is not known. ``time`` (s) is that of its first known occurrence."""
+    """Return the reason why the time of an event is unknown. ``time`` (s) is its first known occurrence."""
     doubt = trace.doubt(event, scope, time)
     return None if doubt is None else NoWindow(str(doubt), not trace.finished)
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 OTHERS = "others"
-"""In ``Trace.uncertain``, all elements without an entry."""
+"""Key in ``Trace.uncertain`` for all elements without an entry."""
 
 
 @dataclass(frozen=True, slots=True)

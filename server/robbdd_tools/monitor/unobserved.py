@@ -1,4 +1,4 @@
-"""Missing evidence: something was not observed when it was needed."""
+"""Errors for missing evidence: something was not observed when it was needed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Unobserved(Exception):
 
 
 def no_grip(agent: str, unseen: str) -> str:
-    """Return why it is unknown whether an agent holds an object, ``unseen`` if its poses are missing."""
+    """Return why it is unknown what an agent holds; ``unseen`` names the body with missing poses, if any."""
     holder, thing = agent.rpartition(":")[2], unseen.rpartition(":")[2]
     if unseen:
         words = f"the log does not say where {unseen} is, and so not whether {agent} holds it"
@@ -28,7 +28,7 @@ def no_grip(agent: str, unseen: str) -> str:
 
 
 def gap_around(times: FloatArray, unseen: NDArray[np.bool_], time: float) -> str:
-    """Return the gap in observations that contains a time (s), in words; ``times`` (n,) s and ``unseen`` (n,)."""
+    """Return in words the gap in observations that contains a time (s); ``times`` (n,) s and ``unseen`` (n,)."""
     known = times[~unseen]
     before, after = known[known < time], known[known > time]
     if before.size and after.size:

@@ -8,7 +8,7 @@ from __future__ import annotations
 Range = tuple[float, float]
 """Smallest and largest margin."""
 SAME = 1e-9
-"""Difference of margins attributed to floating-point rounding."""
+"""Differences of margins up to this are attributed to floating-point rounding."""
 
 
 def joined(ranges: list[Range]) -> Range:

@@ -1,4 +1,4 @@
-"""The windows of a time constraint in an unfinished trace: those that have opened, closed or not."""
+"""The windows of a time constraint that have opened in an unfinished trace."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class WindowSoFar:
-    """The samples of a window that the trace has. A longer trace can add samples unless it is ``closed``.
+    """The samples of a window that the trace has. A longer trace can add samples unless the window is ``closed``.
 
     ``number`` (from 0) counts the windows of a constraint: *every* occurrence of an event has its own.
     """
@@ -37,8 +37,8 @@ class WindowSoFar:
 def windows_so_far(constraint: TimeConstraint, trace: Trace) -> tuple[WindowSoFar, ...]:
     """Return the windows of a time constraint that have opened.
 
-    A window that ends at an event, such as that of ``before``, is known only when the event has occurred: it opens and
-    closes then. A window of the *last* occurrence is known only when the event cannot occur again.
+    A window that ends at an event, such as the window of ``before``, is known only when the event has occurred, and
+    then opens and closes at once. A window of the *last* occurrence is known only when the event cannot occur again.
     """
     if isinstance(constraint, During):
         return _numbered([_interval(constraint, trace)])
@@ -54,7 +54,7 @@ def _numbered(found: list[tuple[Window, bool] | None]) -> tuple[WindowSoFar, ...
 
 
 def _only(trace: Trace, constraint: Before | After, index: int) -> Trace:
-    """Return a trace in which one occurrence of an event, by its position in time, is the only one."""
+    """Return a trace in which only one occurrence of an event remains; ``index`` is its number in order of time."""
     time = trace.event_times(constraint.event, constraint.scope)[index]
     kept = (stamp for stamp in trace.events if stamp.name != constraint.event or stamp.time == time)
     return replace(trace, events=tuple(kept))

@@ -27,21 +27,21 @@ class AnyOf:
 
 
 MEANWHILE = "meanwhile "
-"""Begins the sentence of a behaviour that is executed at the same time as the behaviour before it."""
+"""A behaviour's sentence begins with this if the behaviour is executed at the same time as the previous one."""
 Filler = str | tuple[str, ...] | AnyOf
 """Value of a slot: an element or a value, a set, or any element of a set."""
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """The predicate of ``whenever``, with the values of its slots. Several predicates are joined to one."""
+    """The predicate of ``whenever``, with the values of its slots. Several predicates are joined into one."""
 
     predicate: Predicate
     arguments: Mapping[str, Filler]
 
     @property
     def parts(self) -> list[Condition]:
-        """Its predicates, each with its own slots."""
+        """The predicates of the condition, each with its own slots."""
         return [Condition(predicate, own) for predicate, own in parts_of(self.predicate, self.arguments)]
 
 
@@ -73,7 +73,7 @@ class Fluent:
 class DefinedEvent:
     """An event that occurs when all conditions have become true, or have been true for ``seconds``.
 
-    The time constraint of a condition names the event, too, and has no further meaning.
+    The time constraint of a condition also names the event, and has no other meaning.
     """
 
     name: str

@@ -27,8 +27,8 @@ class NoEventSignal(RobbddError, ValueError):
 class EventSignal:
     """A condition on the messages of a topic under which an event occurs.
 
-    - ``kind``: ``message`` for each message, ``is`` for each message with the value, ``becomes`` for a message with the
-      value after one with another; ``above`` and ``below`` for a number that passes the value.
+    - ``kind``: ``message`` for each message; ``is`` for each message with the value; ``becomes`` for a message with the
+      value after a message with another value; ``above`` and ``below`` for a number that passes the value.
     - ``field``: the path of a field (``state``, ``pose.position.z``, ``position[2]``).
     - ``value``: the text of a number, ``true``, ``false``, a text, or the name of a constant of the message's type.
     """

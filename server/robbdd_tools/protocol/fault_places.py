@@ -1,4 +1,4 @@
-"""Places of faults: find the frames that are in the user's own files, and the files that the user edits."""
+"""Find the frames of a fault in the user's own files, and the files that the user edits."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def is_library(file: str) -> bool:
 
 
 def with_digest(fault: Fault) -> Fault:
-    """Return a fault with the digest of the file that it arose in."""
+    """Return a fault with the digest of the file in which it arose."""
     place = fault.place
     try:
         digest = "" if place is None else hashlib.sha256(load_bytes(Path(place.file))).hexdigest()
@@ -39,7 +39,7 @@ def with_digest(fault: Fault) -> Fault:
 def original(fault: Fault, sources: Mapping[str, str]) -> Fault:
     """Return a fault that names the files that the user edits instead of the copies that were executed.
 
-    ``sources`` maps the absolute paths of the copies to those of the originals.
+    ``sources`` maps the absolute paths of the copies to the paths of the originals.
     """
     frames = tuple(replace(one, file=sources.get(str(Path(one.file).resolve()), one.file)) for one in fault.frames)
     return with_digest(replace(fault, frames=frames))

@@ -1,4 +1,4 @@
-"""Signals of a log that say whether an agent holds something, as users declare them."""
+"""Signals of a log that show whether an agent holds something, as users declare them."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class NoGripSignal(RobbddError, ValueError):
 class GripSignal:
     """A condition on a log under which an agent holds something.
 
-    - ``agent`` and ``held``: the agent, and the object that it then holds; empty if the object follows from its place.
+    - ``agent`` and ``held``: the agent, and the object that it then holds; empty if positions determine the object.
     - ``kind``: ``topic`` for a topic of truth values, ``joint``, ``effort`` or ``wrench``.
     - ``source``: the topic, or the name of a joint in the log.
-    - ``low`` and ``high``: the bounds of the number in SI units; the size of an effort counts, not its sign.
+    - ``low`` and ``high``: the bounds of the number in SI units; an effort counts by its magnitude.
     """
 
     agent: str

@@ -23,11 +23,11 @@ class StoredTrace:
 
 @dataclass(frozen=True, slots=True)
 class JudgeOrder:
-    """The order to judge the clauses of an edited scenario on stored traces of it.
+    """The order to judge the clauses of an edited scenario on stored traces of the scenario.
 
     - ``spec``: the edited scenario, with only the clauses to judge. Its scene, its instance and its tree are not sent.
-    - ``recorded``: the events of the stored executions with their emitters, as ``events`` of their scenario.
-    - ``traces``: the executions. They differ in seed only.
+    - ``recorded``: the events of the stored executions with their emitters, as in ``ScenarioSpec.events``.
+    - ``traces``: the executions. They differ only in their seeds.
 
     An order without clauses only loads the traces.
     """

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 LOG_REQUEST = "log.json"
-"""Name of its file in the run folder."""
+"""Name of the file of the request in the run folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,9 +14,9 @@ class LogRequest:
     """A log and the way in which its names are read.
 
     - ``path``: the absolute path of the log.
-    - ``frames``: maps an element (local name or CURIE) to its frame in the log. The others are found by name.
-    - ``world``: the frame of the world; empty for the root of the frames that are used.
-    - ``max_gap``: the largest time (s) between two observations of a frame that are interpolated.
+    - ``frames``: maps an element (local name or CURIE) to its frame in the log. Other frames are found by name.
+    - ``world``: the frame of the world; empty for the root of the used frames.
+    - ``max_gap``: the largest time (s) between two observations of a frame for interpolation between them.
     - ``rate``: the largest number of samples of the trace per second.
     - ``uncertainty``: the largest error of the position of an element (local name or CURIE) or of ``OTHERS``, in m; of
       ``angle``, in rad; of ``speed``, in m/s.
@@ -27,8 +27,9 @@ class LogRequest:
     - ``grips``: signals that say when an agent holds something, as ``protocol/grip_signals`` reads them.
     - ``clocks``: maps a topic of a ROS bag to the time (s) by which the clock of its headers is ahead.
     - ``signals``: signals that report events, as ``protocol/event_signals`` reads them.
-    - ``begin``, ``end``: the period that is judged, s since the begin of the log; ``None`` if the user states none.
-    - ``quiet``: the log is still recorded, until nothing was written for this time (s); ``None`` for a whole log.
+    - ``begin``, ``end``: the period that is judged, s since the start of the log; ``None`` if the user states none.
+    - ``quiet``: the log is still being recorded; it ends when nothing was written for this time (s). ``None`` for a
+      complete log.
     - ``annotations``: the absolute path of a table of further events; empty if there is none.
     """
 

@@ -26,13 +26,13 @@ from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, M
 
 MANIFEST = "manifest.json"
 STORED_RESULTS = "stored-results.json"
-"""Results of the stored run that is judged again, next to a manifest."""
+"""Name of the file, next to a manifest, with the results of the stored run that is judged again."""
 
 
 def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioSpec]) -> Iterator[ScenarioSpec]:
     """Write a manifest into a run folder, and yield each scenario after it is written. Raises ``OSError``.
 
-    ``head`` is a manifest whose data, except for its scenarios, is written.
+    ``head`` is the manifest to write, without its scenarios.
     """
     executions: dict[str, ExecutionSpec] = {}
     trees: dict[str, TreeSpec] = {}
@@ -77,7 +77,7 @@ def read_scenario(
     trees: Mapping[str, TreeSpec],
     instances: Mapping[str, SceneInstance],
 ) -> ScenarioSpec:
-    """Return the scenario in JSON data of a manifest, whose parts are given by IRI and name.
+    """Return the scenario from JSON data of a manifest, in which IRIs and names stand for parts of the scenario.
 
     Raises ``ValueError``, ``KeyError`` or ``TypeError``.
     """

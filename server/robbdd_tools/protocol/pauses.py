@@ -1,4 +1,4 @@
-"""Pauses of an execution: what a debugger orders, and the state of the scenario that the agent reports.
+"""Pauses of an execution: the orders of a debugger, and the scenario's state that the agent reports.
 
 Times are in s of simulated time, positions in m in the world frame, orientations are unit quaternions (w, x, y, z),
 joint positions in the units of the joints (rad, m).
@@ -16,11 +16,11 @@ from robbdd_tools.base.plain import from_plain
 class Moment(StrEnum):
     """A moment of a clause at which the execution can pause.
 
-    A clause that only Python code judges closes when it is judged, and turns negative if it is then violated.
+    A clause that only Python code judges closes when it is judged, and turns negative if the verdict is *violated*.
     """
 
     OPENS = "opens"
-    """The window of one of its fluents opens; the behaviour of a When clause begins."""
+    """The window of one of the clause's fluents opens, or the behaviour of a When clause begins."""
     CLOSES = "closes"
     """The window closes, or the behaviour ends."""
     NEGATIVE = "turns negative"
@@ -36,7 +36,7 @@ class Until(StrEnum):
     SAMPLE = "sample"
     """The next sample of the simulation."""
     CLOSED = "closed"
-    """The end of the open windows of the clause that is the subject of the pause; without one, the next moment."""
+    """The end of the open windows of the clause that is the pause's subject; without a subject, the next moment."""
 
 
 class Reason(StrEnum):
@@ -90,7 +90,7 @@ DebugOrder = SetBreakpoints | Resume | Pause | WriteScene
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """A moment that has paused the execution: of the fluent number ``part`` of the clause on feature line ``line``."""
+    """A moment that has paused the execution, of fluent number ``part`` of the clause on feature line ``line``."""
 
     line: int
     part: int
@@ -101,11 +101,11 @@ class Hit:
 class PartState:
     """A fluent of a clause, or the behaviour or event of a When clause.
 
-    - ``iri``: of the fluent in the model; empty if the clause has no parts.
+    - ``iri``: the IRI of the fluent in the model; empty if the clause has no parts.
     - ``opened`` and ``closed``: the times of the first and the last sample of its window; ``None`` until known.
     - ``margin``: the margin now, or at the end of the window, in ``unit``; positive if the clause is satisfied.
-    - ``decisive`` and ``decisive_at``: the margin so far that decides, and its time. It is the smallest one or, if the
-      predicate must hold at ``some_time`` only, the largest one.
+    - ``decisive`` and ``decisive_at``: the deciding margin so far, and its time. This is the smallest margin or, if the
+      predicate must hold only at ``some_time``, the largest.
     - ``note``: why there is no margin.
     """
 
@@ -171,9 +171,9 @@ class PastEvent:
 class Paused:
     """Scenario ``index`` has paused at ``time``.
 
-    ``reason`` is a ``Reason``, ``line`` the feature line of the clause that is the subject of the pause: that of the
-    first hit, otherwise the clause whose step is executed; ``None`` before the first step. ``contacts`` are the pairs
-    of elements that touch.
+    ``reason`` is a ``Reason``. ``line`` is the feature line of the clause that is the subject of the pause: the clause
+    of the first hit, or else the clause whose step is executed; ``None`` before the first step. ``contacts`` are the
+    pairs of elements that touch.
     """
 
     index: int

@@ -1,4 +1,4 @@
-"""The form of predicates in a manifest: a name of the catalog, or the definition of a named predicate."""
+"""The form of predicates in a manifest: a catalog name, or the definition of a named predicate."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 OWN_STEPS = "model_*steps.py"
-"""Pattern of the step files in a run folder that are copies of users' own."""
+"""Pattern of the step files in a run folder that are copies of users' files."""
 
 CRASH = "ROBBDD_CRASH"
 """Environment variable: the path, without extension, of the files that record where an agent was when it crashed."""
@@ -16,11 +16,11 @@ DEBUG_PORT = "ROBBDD_DEBUG_PORT"
 PAUSING = "ROBBDD_PAUSING"
 """Environment variable: if set, a debugger controls the pauses of an agent by its orders (``protocol.pauses``)."""
 DEBUG_HOST = "127.0.0.1"
-"""Address of that port. A client of that port can execute code, so other machines must not reach it."""
+"""Address of the debugger's port. Its clients can execute code, so other machines must not reach it."""
 STARTUP = 120.0
-"""Limit of the wall time from an agent's start, or from an order, to the start of the scenario, s."""
+"""Limit of the wall time (s) from an agent's start, or from an order, to the start of the scenario."""
 NOTE_SIZE = 4096
-"""Size of the file ``call_file``, bytes."""
+"""Size (bytes) of the file ``call_file``."""
 
 
 def trace_file(folder: Path, index: int) -> Path:

@@ -18,9 +18,9 @@ class FaultKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SceneFault:
-    """A reason for which every run of a scene instance would refuse it, and its source position.
+    """A reason why every run would refuse a scene instance, and its source position.
 
-    ``entry`` is the entry of the model at that position that is wrong, if a single one is.
+    If a single entry of the model at that position is wrong, ``entry`` is this entry.
     """
 
     kind: str

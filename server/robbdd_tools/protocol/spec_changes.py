@@ -1,4 +1,4 @@
-"""Compare a scenario with its stored execution: which changes, apart from clauses, make the trace no evidence."""
+"""Compare a scenario with its stored execution: find changes, except of clauses, that make the trace no evidence."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 AGAIN = "execute a new run"
-"""The fix if a stored trace is no evidence."""
+"""Instruction for the case that a stored trace is no evidence."""
 CHANGED = f"{{}} changed since the run: {AGAIN}"
 _POSITIONS = frozenset({"origin"})
 """Source positions, which move with every edit."""
 _OF_RUN = frozenset({"origin", "name", "lead", "tail"})
-"""Of a behaviour tree, also its name within a run, and the times that follow from the windows of clauses."""
+"""Ignored fields of a behaviour tree: also its name within a run, and times that follow from windows of clauses."""
 
 
 def change_of(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
@@ -41,13 +41,13 @@ def content_change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
 
 def seed_change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
     """Return the part of ``change_of`` that concerns the seed."""
-    # A scenario whose number changed has another seed, but its trace still shows an execution of it.
+    # A scenario with a changed number has another seed, but its trace still shows an execution of it.
     same = spec.variation != stored.variation or spec.seed == stored.seed
     return "" if same else CHANGED.format("the seed")
 
 
 def without_repetition(spec: ScenarioSpec) -> ScenarioSpec:
-    """Return a scenario without its number, its seed and its place: equal for all repetitions of it."""
+    """Return a scenario without its number, its seed and its place: the result is equal for all its repetitions."""
     return replace(spec, feature="", line=0, name="", seed=0, repetition=1)
 
 
@@ -76,7 +76,7 @@ def _comparisons(spec: ScenarioSpec, stored: ScenarioSpec) -> Iterator[tuple[str
 
 def _same_behaviours(spec: ScenarioSpec, stored: ScenarioSpec) -> bool:
     now, then = _behaviours(spec), _behaviours(stored)
-    # Earlier versions stored the sentences only.
+    # Earlier versions stored only the sentences.
     if all(clause.statement is not None for clause in (*now, *then)):
         return list(map(_content, now)) == list(map(_content, then))
     return [clause.sentence for clause in now] == [clause.sentence for clause in then]

@@ -29,7 +29,7 @@ class SceneSpec:
     """The contents of a scenario's world. All names are CURIEs, as in the text of the feature.
 
     - ``workspaces``: maps a workspace to the objects that carry it.
-    - ``contains``: maps a workspace to the workspaces inside it, for example the table's to that of a bin.
+    - ``contains``: maps a workspace to the workspaces inside it, such as a table's workspace to a bin's.
     - ``places``: maps an object to the workspace where the Given clauses put it.
     - ``config``: the configurations that the Given clauses set.
     - ``unused``: the objects and agents that no clause mentions.
@@ -71,7 +71,7 @@ class ExecutionSpec:
 NO_PHYSICS = "kinematic world: no physics"
 """How results say that a scenario was executed in the kinematic world."""
 PROBE = "probe"
-"""Role of a clause that the model does not have. It is measured at the end of an execution, and decides no verdict."""
+"""Role of a clause that is not in the model. It is measured at the end of an execution, and decides no verdict."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class ScenarioSpec:
 
     @property
     def chosen_scene(self) -> ChosenScene | None:
-        """The chosen scene instance, ``None`` if the scenario runs without one or in that of its execution."""
+        """The chosen scene instance, ``None`` if the scenario runs without one or in its execution's scene instance."""
         chosen = self.chosen_instance
         if chosen is None or chosen is not self.instance:
             return None
@@ -168,7 +168,7 @@ class Manifest:
     """Everything that the agent needs, apart from the feature files.
 
     If ``traces`` is true, the agent writes a ``trace_file`` for each scenario. ``sources`` maps the path of each file
-    of users' steps in the run folder to the file of which it is a copy.
+    of users' steps in the run folder to the file that was copied.
     """
 
     model: str

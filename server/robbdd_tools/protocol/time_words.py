@@ -1,8 +1,8 @@
-"""Time constraints in the sentences of Gherkin steps: how they are written, and how they are read back.
+"""Write and read time constraints in the sentences of Gherkin steps.
 
-The wording has a version, because a sentence must never have two meanings. Wording 1 wrote "within 8 seconds after" for
-what must hold throughout the 8 seconds. Wording 2 writes "for 8 seconds after" instead, and "at some time within 8
-seconds after" for what must hold at some time only.
+The wording has a version, because a sentence must never have two meanings. Wording 1 wrote "within 8 seconds after" if
+a predicate must hold throughout the 8 seconds. Wording 2 writes "for 8 seconds after" instead, and "at some time within
+8 seconds after" if a predicate must hold only at some time.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 WORDING = 2
-"""The version of the sentences that are written now."""
+"""The version of the sentences that this version of RobBDD writes."""
 FIRST_WORDING = 1
 """The version of a feature that does not state its version."""
 HEADER = f"# wording: {WORDING}"

@@ -27,7 +27,7 @@ class Evidence:
 KINDS: Mapping[str, Any] = {
     kind.__name__: kind for kind in (Evidence, Trace, Contact, Doubt, EventStamp, Region, OpeningRecord)
 }
-"""The dataclasses that may occur; others cannot be restored."""
+"""The dataclasses that a trace may contain; others cannot be restored."""
 
 
 def pack(evidence: Evidence) -> bytes:
@@ -109,9 +109,9 @@ def _is_optional(field: Field[Any]) -> bool:
 
 
 def _completed(trace: Trace) -> Trace:
-    """Add to an older trace which elements are immovable: those with configurations but without a mass.
+    """Add the immovable elements to an older trace: elements with configurations but without a mass.
 
-    Its contact forces cannot be reconstructed: clauses judged by force are unknown.
+    The trace's contact forces cannot be reconstructed, so clauses judged by force are unknown.
     """
     elements = {element for element, _ in trace.settings}
     immovable = (name for name in trace.names if name in elements and (name, "mass") not in trace.settings)

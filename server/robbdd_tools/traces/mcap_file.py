@@ -67,7 +67,7 @@ SCHEMAS: Mapping[str, tuple[str, dict[str, Any]]] = {
         _object(iri=TEXT, name=TEXT, role=TEXT, sentence=TEXT, verdict=TEXT, robustness=NUMBER, unit=TEXT, reason=TEXT),
     ),
 }
-"""Topic to the name and JSON schema of its messages' type."""
+"""Topic → name and JSON schema of the type of its messages."""
 
 View = tuple[float, str, Any]
 """A message for viewers: simulated time (s), topic, message."""
@@ -103,7 +103,7 @@ def read_trace(path: Path) -> Evidence:
         with open_regular(path) as file:
             for _, _, message in make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE]):
                 return unpack(message.data)
-    except Exception as error:  # On damaged bytes each decoder raises exceptions of its own types.
+    except Exception as error:  # Each decoder raises exceptions of its own types for damaged bytes.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     raise UnreadableTrace(f"{path} holds no trace")
 
@@ -115,7 +115,7 @@ def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[flo
         with open_regular(path) as file:
             for _, channel, message in make_reader(file, validate_crcs=True).iter_messages(topics=list(topics)):
                 found[channel.topic].append((message.log_time / 1e9, json.loads(message.data)))
-    except Exception as error:  # On damaged bytes each decoder raises exceptions of its own types.
+    except Exception as error:  # Each decoder raises exceptions of its own types for damaged bytes.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     return found
 

@@ -1,6 +1,6 @@
-"""Record the user's code being called in a mapped file, which survives the process.
+"""Record the current call of users' code in a mapped file, which survives the process.
 
-A process that the system kills, as when memory runs out, can write nothing; a mapped file keeps its contents.
+A process that the system kills, for example without memory, can write nothing; a mapped file keeps its contents.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _page: mmap.mmap | None = None
 
 
 def keep_in(path: Path) -> None:
-    """Use a file for the notes of this process. Raises ``OSError``."""
+    """Keep the notes of this process in a file. Raises ``OSError``."""
     global _page
     with path.open("w+b") as file:
         file.truncate(NOTE_SIZE)
@@ -23,7 +23,7 @@ def keep_in(path: Path) -> None:
 
 
 def begin(name: str, code: object) -> bytes:
-    """Record the start of a call of ``code``, named ``name``; returns the note that ``end`` restores."""
+    """Record the start of a call of ``code``, named ``name``; return the note that ``end`` restores."""
     if _page is None:
         return b""
     before = _page[:]

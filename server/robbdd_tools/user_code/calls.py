@@ -16,9 +16,9 @@ from robbdd_tools.user_code import call_note
 from robbdd_tools.user_code.modules import NotImported, folder_of, refuse_hidden, search
 
 MAX_FRAMES = 20
-"""Maximum frames of a fault; of a deeper recursion, the outermost and the innermost are kept."""
+"""Maximum number of frames of a fault; a deeper recursion keeps its outermost and innermost frames."""
 MAX_WORDS = 2000
-"""Maximum characters of an exception's message in a fault."""
+"""Maximum number of characters of an exception's message in a fault."""
 
 
 class UserCodeError(Exception):
@@ -30,9 +30,9 @@ class UserCodeError(Exception):
 
 
 def load_attribute(name: str, model: str) -> Callable[..., Any]:
-    """Return ``module:attribute``; modules in the folder of the file ``model`` (a path or URI) are found, too.
+    """Return ``module:attribute``; the module may be in the folder of the file ``model`` (a path or URI).
 
-    Raises ``UserCodeError``, also if another module has the name of one in that folder.
+    Raises ``UserCodeError``, also if another module hides a module of this folder.
     """
     module_name, _, attribute = name.partition(":")
     folder = folder_of(model)
@@ -68,12 +68,12 @@ def call_user_code(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def refused(name: str, message: str, frames: tuple[Frame, ...] = ()) -> UserCodeError:
-    """Return the error for user code that raises nothing but returns an invalid answer."""
+    """Return the error for users' code that raises nothing but returns an invalid answer."""
     return UserCodeError(message, with_digest(Fault("", message, name, frames)))
 
 
 def definition_of(code: object) -> tuple[Frame, ...]:
-    """Return where a function is defined: the place of an error in its answer or in its parameters."""
+    """Return where a function is defined: errors in its answer or its parameters are reported there."""
     compiled: Any = getattr(code, "__code__", None)
     if compiled is None:
         return ()

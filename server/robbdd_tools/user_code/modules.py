@@ -1,4 +1,4 @@
-"""Search path for users' modules: after the standard library and all installed packages."""
+"""Search for users' modules after the standard library and all installed packages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.base.isolation import NO_USER_CODE, OWNER_FORBIDS, SEARCHED, U
 from robbdd_tools.catalog.registry import load_catalog
 
 _folders: list[str] = []
-"""Folders of models whose code was requested; these and ``_last``, those of ``PYTHONPATH``, end ``sys.path``."""
+"""Folders of models whose code was requested. ``sys.path`` ends with these and with ``_last`` (``PYTHONPATH``)."""
 _last: list[str] = []
 
 
@@ -21,7 +21,7 @@ _REASONS = {UNTRUSTED: "the workspace is not trusted", OWNER_FORBIDS: "the owner
 
 
 class NotImported(Exception):
-    """A user's module cannot be imported; the message gives the reason, ``file`` is the module if it exists."""
+    """A user's module cannot be imported; the message gives the reason. ``file`` is the module if it exists."""
 
     def __init__(self, message: str, file: Path | None = None) -> None:
         super().__init__(message)
@@ -35,7 +35,7 @@ def folder_of(model: str) -> Path | None:
 
 
 def search(folder: Path | None) -> None:
-    """Make modules in a folder and in the environment's ``PYTHONPATH`` importable, after all others.
+    """Make modules in a folder and in the environment's ``PYTHONPATH`` importable, after all other modules.
 
     Raises ``NotImported`` if this process must not run users' code.
     """
@@ -43,7 +43,7 @@ def search(folder: Path | None) -> None:
     if reason:
         why = _REASONS.get(reason, "--no-user-code was given")
         raise NotImported(f"users' code is not run: {why}")
-    # The catalog's third-party words are found on sys.path: only installed packages may add any.
+    # Third-party words of the catalog are found on sys.path, and only installed packages may add words.
     load_catalog()
     if not _folders:
         _last.extend(entry for entry in inherited_paths() if entry not in sys.path)
@@ -52,14 +52,14 @@ def search(folder: Path | None) -> None:
             os.environ[SEARCHED] = os.pathsep.join(inherited_paths())
     if folder is not None and str(folder) not in _folders:
         _folders.append(str(folder))
-    # Python recognises a compiled module by its second and size: after a quick edit it would execute the code before.
+    # Python recognises a compiled module by second and size: after a quick edit, it would execute the old code.
     sys.dont_write_bytecode = True
     others = [entry for entry in sys.path if entry not in _folders and entry not in _last]
     sys.path[:] = [*others, *_folders, *_last]
 
 
 def refuse_hidden(name: str, folder: Path) -> None:
-    """Raise ``NotImported`` if a module in the model's folder is hidden by another one of the same name."""
+    """Raise ``NotImported`` if another module of the same name hides a module in the model's folder."""
     own = next((one for one in (folder / f"{name}.py", folder / name / "__init__.py") if one.is_file()), None)
     if own is None:
         return

@@ -19,16 +19,16 @@ from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED
 from robbdd_tools.base.printable import encodable
 
 MOST_BYTES = 1 << 20
-"""Limit of a message."""
+"""Maximum size of a message in bytes."""
 ENDING = 0.5
-"""Seconds in which a process that is no longer needed may end by itself."""
+"""A process that is no longer needed may end by itself within this time (s)."""
 PYTHON = "python"
-"""As the program of a command line, this is the interpreter that executes RobBDD: its packages are there."""
+"""As the program of a command line, this means the interpreter that executes RobBDD, with its packages."""
 INSTALL = "install robbdd-tools[external]"
 
 
 class SystemFailed(Exception):
-    """The system does not run, does not answer in time, or answers with something else; the message says so."""
+    """The system does not run, does not answer in time, or answers with invalid data; the message gives the reason."""
 
 
 class SystemLink(Protocol):
@@ -39,7 +39,7 @@ class SystemLink(Protocol):
         ...
 
     def receive(self, seconds: float) -> dict[str, Any]:
-        """Return the next message. Raises ``SystemFailed`` if none arrives within some seconds."""
+        """Return the next message. Raises ``SystemFailed`` if none arrives within ``seconds``."""
         ...
 
     def close(self) -> None:

@@ -9,8 +9,8 @@ BELT = 0.008
 GAP = 0.001
 """Clearance between the belt and the parts next to it, m."""
 STOP, STOP_HEIGHT = 0.06, 0.02
-"""Length of the stop and its height above the belt, m. An open finger does not fit behind it, where it would press on
-the stop when closing: objects are gripped from the belt's sides."""
+"""Length of the stop and its height above the belt, m. An open finger does not fit behind the stop and would press on
+it when closing. So objects are gripped from the belt's sides."""
 SPACE = 0.10
 """Height of the workspace above the belt, m."""
 SPEED = 0.10

@@ -16,11 +16,11 @@ SIDE = 0.040
 TRAVEL = 0.16
 """How far the drawer opens, m."""
 KNOB, KNOB_HEIGHT, STANDOFF = 0.016, 0.024, 0.046
-"""Radius and height of the knob, and its distance from the front, m: a finger or a hand fits between them."""
+"""Radius and height of the knob, and its distance from the front, m: a finger or a hand fits behind the knob."""
 STEM = 0.005
 """Half edge of the bar that holds the knob, m."""
 SLIDING, DAMPING = 1.0, 5.0
-"""Dry friction (N) and damping (N s/m) of the drawer's runners: those of a light drawer on plastic."""
+"""Dry friction (N) and damping (N s/m) of the drawer's runners, as for a light drawer on plastic."""
 
 
 def _chest() -> tuple[Shape, ...]:

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 MISPLACED = 1e-4
-"""Least distance (m) that counts for an object in no workspace that is correct for it."""
+"""If no workspace is correct for an object, its distance counts as at least this (m)."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Margin (m) of the object with the smallest margin to be inside any workspace that is correct for it, shape (n,).
+    """Return the smallest margin (m) of any object to be inside a workspace that is correct for it, shape (n,).
 
     If none of the workspaces is correct for an object, its margin is the negative distance from the faces of the
-    nearest of them. Raises ``Unobserved`` if the scene states no correct workspace for an object.
+    nearest workspace. Raises ``Unobserved`` if the scene states no correct workspace for an object.
     """
     import numpy as np
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.05
-"""Accumulated displacement (m) that still counts as untouched (paper, section on the experiment)."""
+"""A target counts as untouched up to this accumulated displacement (m) (paper, section on the experiment)."""
 FORCE_LIMIT = 140.0
 """Contact force (N) on an immovable target. ISO/TS 15066:2016, table A.2: the largest permissible force of a
 quasi-static contact with hands and fingers, the body parts that an arm can clamp against a work surface."""
@@ -23,8 +23,8 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
     A target is judged by force if it has a ``force_limit`` or is immovable (a fixed object, or an agent), otherwise by
     displacement: the length of its path since the window opened. A workspace is represented by the objects that carry
-    it; the smallest margin counts. If some of these are judged by force and others by displacement, each margin is
-    divided by its limit.
+    it; the smallest margin counts. If some of these objects are judged by force and others by displacement, each margin
+    is divided by its limit.
     """
     import numpy as np
 

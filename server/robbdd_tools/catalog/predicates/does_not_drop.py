@@ -14,18 +14,19 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.05
-"""Height (m) that a released object may fall: gripper and cup release above a surface, not on it."""
+"""A released object may fall by this height (m), because gripper and cup release it above a surface, not on it."""
 AT_REST = 0.01
-"""Speed (m/s) below which an object is at rest."""
+"""An object is at rest below this speed (m/s)."""
 REST_TIME = 0.1
-"""Seconds without a grip for which an object must have been that slow: a brief loss of contact is not rest."""
+"""An object is at rest when it was slow and not held for this time (s): a brief loss of contact is not rest."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return the height (m) that the object may still fall, shape (n,).
 
-    ``LIMIT`` while it is held; otherwise ``LIMIT`` minus its drop since it was last held or at rest and, if it is at
-    rest, at most its distance to the faces of the best workspace (negative outside).
+    While the object is held, this is ``LIMIT``. Otherwise, it is ``LIMIT`` minus the drop since the object was last
+    held or at rest. If the object is at rest, it is at most the distance to the faces of the best workspace (negative
+    outside).
     """
     import numpy as np
 

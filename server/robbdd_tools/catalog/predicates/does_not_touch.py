@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Return minus the contact force since the previous sample, N, shape (n,); 0 where it is too faint to count."""
+    """Return the negative contact force since the previous sample, N, shape (n,); 0 where it is too faint to count."""
     import numpy as np
 
     force = contact_force(evidence, arguments)

@@ -1,4 +1,4 @@
-"""A target has a configuration value: set before the scenario starts, read back from the world, then compared."""
+"""A target has a configuration value, which is set before the scenario, read back from the world, and compared."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 TOLERANCE = 1e-6
-"""Relative difference attributed to floating-point rounding."""
+"""Relative differences up to this are attributed to floating-point rounding."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Return 1 where the value read back is the wanted one and -1 elsewhere, shape (n,).
+    """Return 1 where the value that was read back is the wanted value and -1 elsewhere, shape (n,).
 
     Raises ``SettingError`` for an unknown name or an invalid value.
     """

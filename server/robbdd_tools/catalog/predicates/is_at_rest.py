@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.01
-"""Speed (m/s) below which a point of an object is at rest, as for *does not drop*."""
+"""A point of an object is at rest below this speed (m/s), as for *does not drop*."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Limit minus an upper bound of the speed of all points of the object since the previous sample, m/s, shape (n,).
+    """Return limit minus an upper bound of the speed (m/s) of all object points since the previous sample, shape (n,).
 
     The bound is the speed of the object's position, plus the angular speed times the distance of its farthest point.
     """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Room left up to the joint position at which the thing no longer counts as closed, m or deg, shape (n,)."""
+    """Return how far (m or deg) the joint may still move until the thing no longer counts as closed, shape (n,)."""
     return evidence.opening(str(arguments["object"])).short_of_closed()
 
 

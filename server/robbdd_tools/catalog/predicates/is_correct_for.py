@@ -1,4 +1,4 @@
-"""A workspace is a place where an object belongs, by a relation that the scene states."""
+"""A workspace is correct for an object, by a relation that the scene states."""
 
 from __future__ import annotations
 

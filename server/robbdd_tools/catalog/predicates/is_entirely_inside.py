@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Distance (m) of the object's outline to the nearest face of the workspace, positive inside, shape (n,).
+    """Return the distance (m) of the object's outline to the nearest workspace face, positive inside, shape (n,).
 
-    At the supporting face only the object's position counts.
+    At the supporting face, only the object's position counts.
     """
     name = str(arguments["object"])
     return inside_margin(evidence, name, (str(arguments["workspace"]),), whole(evidence, name))

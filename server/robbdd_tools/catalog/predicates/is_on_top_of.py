@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 DIRECTIONS = 180
-"""Horizontal directions in which the footprint is measured; it is too large by at most 0.02 % of its size."""
+"""Number of horizontal directions in which a footprint is measured; it is at most 0.02 % too large."""
 APART = 1e-4
-"""Least distance (m) that counts for objects that do not touch."""
+"""The gap of objects that do not touch counts as at least this distance (m)."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return how far (m) the centre of ``one`` is above the top and within the footprint of ``other``, shape (n,).
 
-    The smaller of both counts. Where the two do not touch, the margin is at most the negative gap between them.
+    The smaller of the two values counts. Where the objects do not touch, the margin is at most their negative gap.
     """
     import numpy as np
 

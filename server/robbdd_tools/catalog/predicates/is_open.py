@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Joint position beyond the one from which the thing counts as open, m or deg, shape (n,)."""
+    """Return how far (m or deg) the joint is beyond the position from which the thing counts as open, shape (n,)."""
     return evidence.opening(str(arguments["object"])).beyond_open()
 
 

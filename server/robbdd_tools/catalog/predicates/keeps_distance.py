@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Gap between the surfaces of two elements minus the given distance, in the unit of that distance, shape (n,).
+    """Return the gap between two elements' surfaces minus the given distance, in the distance's unit, shape (n,).
 
-    A workspace is represented by the objects that carry it; the nearest counts. Raises ``KeyError`` if the gap was not
+    The objects that carry a workspace represent it; the nearest object counts. Raises ``KeyError`` if the gap was not
     measured.
     """
     import numpy as np

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Smallest distance of the agent's joints from their limits minus the given one, % of the joint's range, (n,)."""
+    """Return the joints' smallest distance from their limits minus the given one, % of the joint's range, (n,)."""
     bound = read_quantity(str(arguments["share"]), "ratio")
     return (evidence.joint_clearance(str(arguments["agent"])) - bound.si) / bound.factor
 

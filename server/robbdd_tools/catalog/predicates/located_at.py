@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Distance (m) of the object's position to the nearest face of the workspace, positive inside, shape (n,).
+    """Return the distance (m) of the object's position to the nearest workspace face, positive inside, shape (n,).
 
-    Several regions of a workspace count as their union; with the configuration ``whole_object`` the whole object
+    Several regions of a workspace count as their union. With the configuration ``whole_object``, the whole object
     counts.
     """
     return inside_margin(evidence, str(arguments["object"]), (str(arguments["workspace"]),))

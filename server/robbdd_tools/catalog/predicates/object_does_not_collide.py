@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return limit minus displacement (m) or limit minus contact force (N) at each sample, shape (n,).
 
-    Limits, and which of them applies, are those of an agent (*does not collide*). If both apply to the objects that
-    carry a workspace, each margin is divided by its limit. Raises ``KeyError`` if contact forces were not recorded.
+    Limits are the same as for agents (*does not collide*), and are chosen by the same rule. If both limits apply to the
+    objects that carry a workspace, each margin is divided by its limit. Raises ``KeyError`` if contact forces were not
+    recorded.
     """
     import numpy as np
 
@@ -53,8 +54,8 @@ def unit(evidence: Evidence, arguments: Arguments) -> str:
 def _pushed(evidence: Evidence, carrier: str, force: FloatArray) -> FloatArray:
     """Return the distance (m) by which contacts have moved a carrier up to each sample, shape (n,).
 
-    Movement counts from a contact (``force``, N, at each sample) until the carrier is at rest and untouched, because an
-    object that was hit slides on.
+    Movement counts from a contact (``force``, N, at each sample) until the carrier is at rest and untouched, because it
+    slides on after a hit.
     """
     import numpy as np
 

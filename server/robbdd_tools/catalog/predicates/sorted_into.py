@@ -12,10 +12,9 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Margin (m) of the object with the smallest margin to be inside any of the workspaces, shape (n,).
+    """Return the smallest margin (m) of any object to be inside one of the workspaces, shape (n,).
 
-    If an object or a workspace has the configuration ``exactly_one``, being inside a second workspace counts against
-    it.
+    If an object or a workspace has the configuration ``exactly_one``, the object must not be inside a second workspace.
     """
     import numpy as np
 

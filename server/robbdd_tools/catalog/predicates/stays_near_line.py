@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Return the given distance minus that of the position from the line, in the unit of the given one, shape (n,).
+    """Return the given distance minus the position's distance from the line, in the given unit, shape (n,).
 
-    The line ends at the positions of both other elements at the same sample. Raises ``KeyError`` for a workspace that
-    several objects carry.
+    The line connects the positions of the two other elements at the same sample. Raises ``KeyError`` for a workspace
+    that several objects carry.
     """
     bound = read_quantity(str(arguments["distance"]), "length")
     point, start, end = (only_position(evidence, str(arguments[slot])) for slot in ("one", "origin", "destination"))

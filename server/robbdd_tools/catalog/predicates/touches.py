@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Contact force since the previous sample minus the faintest one that counts, N, shape (n,)."""
+    """Return the contact force since the previous sample minus the faintest force that counts, N, shape (n,)."""
     return contact_force(evidence, arguments) - FAINTEST
 
 
