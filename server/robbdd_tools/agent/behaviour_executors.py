@@ -31,7 +31,7 @@ PLACES = 1
 
 
 class BehaviourExecutors:
-    """The executors of a simulation's agents, each of which keeps its state between behaviours.
+    """The executors of a simulation's agents. Each executor keeps its state between behaviours.
 
     ``emit`` is called with the name of each event, ``note_choice`` with the workspace chosen among several.
     """

@@ -199,7 +199,7 @@ class BehaviourRun:
             yield
 
     def _when_due(self, index: int) -> Generator[None, None, str]:
-        """Wait for the events that a behaviour requires, then for arms that make room; then execute it."""
+        """Wait for the events that a behaviour requires, then for arms that make room; then execute the behaviour."""
         call = self._calls[index]
         while self._awaited(call) or (call.awaited and self._idle_arms.are_moving):
             yield

@@ -229,7 +229,7 @@ class ClauseWatch:
 
 
 def _parts(line: int, clause: Clause, known: ClauseSpec | None) -> Iterator[_Part]:
-    """Yield the fluents of a clause. Fluents and texts have common numbers, in the order of the sentence."""
+    """Yield the fluents of a clause. Fluents and texts share one numbering, in the order of the sentence."""
     iris = () if known is None else known.parts or (known.iri,)
     for number, (leaf, negated) in enumerate(_signed(clause)):
         if isinstance(leaf, Fluent) and leaf.predicate.evaluate is not None:

@@ -10,7 +10,7 @@ from time import sleep
 from typing import TextIO
 
 PAUSE = 0.2
-"""After the parent process has closed the stream, this process checks at this interval (s) that it is alive."""
+"""After the parent process has closed the stream, check at this interval (s) that the parent is alive."""
 
 
 def read_requests(stream: TextIO, is_taken: Callable[[str], bool] = lambda _: False) -> Iterator[str]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Reports
 
 MAX_CHARACTERS = 16_000
-"""Maximum characters of one scenario's output that are sent as messages."""
+"""At most this many characters of a scenario's output are sent as messages."""
 CUT = "… the rest of the output is in the log of the run"
 
 

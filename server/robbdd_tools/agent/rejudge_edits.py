@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robbdd_tools.traces.codec import Evidence
 
 KEPT = 512 * 1024 * 1024
-"""Maximum bytes of the trace files in memory, uncompressed; further traces are read each time."""
+"""At most this many bytes of uncompressed trace files are kept in memory; other traces are read each time."""
 
 
 @dataclass(frozen=True, slots=True)

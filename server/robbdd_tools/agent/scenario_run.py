@@ -222,7 +222,7 @@ class ScenarioRun:
         First judge probes, and texts with a policy or with the words of a predicate's phrase. Open clauses are unknown.
         """
         for line, sentence in list(self._open.items()):
-            # behave has no step for such a text, nor for a probe.
+            # behave has no step for these texts and for probes.
             if line in self._probes or (line in self._texts and isinstance(self._clauses[line], Fluent)):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):

@@ -30,7 +30,7 @@ class Session:
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
         self._channel = channel
-        # Repetitions share a feature's scenario; behave run by hand executes the first of them.
+        # Repetitions share a feature's scenario; if behave is run by hand, it executes the first repetition.
         self._indices = {
             ((folder / spec.feature).resolve(), spec.line): index
             for index, spec in reversed(list(enumerate(manifest.scenarios)))

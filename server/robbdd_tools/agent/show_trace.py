@@ -28,7 +28,7 @@ FAILED = 2
 FRAMES = 4000
 """Maximum number of frames; longer executions are thinned to every second one, every third …"""
 SAME = 1e-6
-"""Largest difference of two stamps of the same sample, s."""
+"""Stamps belong to the same sample if they differ by at most this (s)."""
 
 
 def show(path: Path) -> dict[str, Any]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SIZE = (640, 400)
 """Width and height of a frame, pixels."""
 STRIDE = 5
-"""Control ticks between frames, which makes 12.5 frames per simulated second."""
+"""Number of control ticks between frames: this makes 12.5 frames per simulated second."""
 QUALITY = 70
 """Compression quality of the frames, in per cent."""
 TEXT, STRIP = 16, 26

@@ -65,7 +65,7 @@ class Setting:
 
 NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
 DENSE: Numbers = (0.35, 0.60, -0.30, 0.30)
-"""Ranges (m) of the paper's experiment: nearest and farthest ahead of the robot, lowest and highest to its left."""
+"""Ranges (m) of the paper's experiment: nearest and farthest ahead of the robot, rightmost and leftmost."""
 YES_NO: tuple[tuple[str, Numbers], ...] = (("yes", (1.0,)), ("no", (0.0,)))
 _EVERY = (
     Setting(

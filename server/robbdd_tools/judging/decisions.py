@@ -103,8 +103,8 @@ class Instance:
 def alternatives(fluent: Fluent) -> Iterator[Iterator[Instance]]:
     """Yield the alternatives of a fluent. The fluent holds if one alternative does.
 
-    An alternative is a list of instances, all of which must hold. A set that fills a slot of the predicate and a slot
-    of the condition, or slots of two conditions, has the same element in both.
+    All instances of an alternative must hold. If a set fills a slot of the predicate and a slot of the condition, or
+    slots of two conditions, both slots have the same element.
     """
     slots, arguments = fluent.predicate.slots, dict(fluent.arguments)
     condition = fluent.condition

@@ -51,7 +51,7 @@ class Stream:
 def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
     """Return the true positions (n, 3) m at the last samples at or before some times.
 
-    The position of a workspace is that of its first region.
+    The position of a workspace is the position of its first region.
     """
     regions = dict(zip(evidence.workspaces, map(evidence.regions, evidence.workspaces), strict=True)).get(target)
     if not regions:

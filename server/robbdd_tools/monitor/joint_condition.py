@@ -1,4 +1,4 @@
-"""A condition that consists of several predicates, all of which must hold: ``whenever a and b``."""
+"""A condition of several predicates that must all hold: ``whenever a and b``."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def unknown(reason: str, cause: Cause, vacuous: str = "", fault: Fault | None = 
 def negation(verdict: Verdict) -> Verdict:
     """Return the strong Kleene negation of a verdict.
 
-    The margin changes its sign, and the instant is that of the smallest margin.
+    The margin changes its sign, and the instant is the instant of the smallest margin.
     """
     if verdict.outcome is Outcome.UNKNOWN:
         return verdict

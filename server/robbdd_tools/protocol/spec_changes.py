@@ -52,7 +52,7 @@ def without_repetition(spec: ScenarioSpec) -> ScenarioSpec:
 
 
 def edited_clauses(spec: ScenarioSpec, stored: ScenarioSpec) -> tuple[ClauseSpec, ...]:
-    """Return the clauses of a scenario whose content, iterations or policies differ from those of its execution.
+    """Return the clauses of a scenario with content, iterations or policies that differ from its stored execution.
 
     If one of several clauses with the same IRI differs, all of them are returned. Behaviours are left out, because
     ``change_of`` compares them.

@@ -107,7 +107,7 @@ class ContactForces:
         return series(self._impulses, size)
 
     def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
-        """Return the contacts so far, earliest first; ``times`` (n,) are those of the samples, s.
+        """Return the contacts so far, earliest first; ``times`` (n,) are the times of the samples, s.
 
         Contacts with an object that the agent grips at some time are left out. So are contacts with the support of this
         object while it is picked up or put down, unless the force exceeds the limit of *does not collide*.

@@ -47,7 +47,7 @@ class GripperParts:
         return [joint for body in self.bodies[1:] for joint in body.joints]
 
     def error(self, text: str, keyword: str = "") -> SceneError:
-        """Return an error about the gripper; ``keyword`` is that of the wrong entry of the model, if any."""
+        """Return an error about the gripper; ``keyword`` names the wrong entry of the model, if any."""
         entry = ModelEntry(keyword) if keyword else None
         reason = f"the gripper of {self.source.name} {text}{self._note}"
         return SceneError(reason, origin=self.source.origin, entry=entry)

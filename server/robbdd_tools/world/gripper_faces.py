@@ -37,7 +37,7 @@ def meeting_faces(model: Any, bodies: Sequence[int], states: Mapping[float, Floa
     """Return the shapes of the two fingers that approach each other most and meet; empty without such fingers.
 
     Another finger that closes on one of the two, like the second finger opposite a thumb, belongs to the face of the
-    other one. ``bodies`` are those of the gripper, the palm first. ``states`` are the joint positions of the model at
+    other one. ``bodies`` are the gripper's bodies, the palm first. ``states`` are the joint positions of the model at
     the two ends of the actuator's range.
     """
     palm = bodies[0]

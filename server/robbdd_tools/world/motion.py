@@ -106,7 +106,7 @@ def frame_of(pose: ToolPose) -> tuple[FloatArray, FloatArray]:
 def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed: float) -> Motion:
     """Plan a motion from joint positions (n,) to a tool pose.
 
-    ``limits`` (n,) are the joints' speed limits, rad/s, ``speed`` that of the tool, m/s.
+    ``limits`` (n,) are the speed limits of the joints, rad/s; ``speed`` is the speed limit of the tool, m/s.
 
     The tool moves along a straight line in cylinder coordinates with a minimum-jerk profile, as fast as the tool's and
     the joints' limits allow. Raises ``Unreachable``.
@@ -122,7 +122,7 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
 def plan_through(arm: Arm, joints: FloatArray, poses: Sequence[ToolPose], limits: FloatArray, speed: float) -> Motion:
     """Plan a motion from joint positions (n,) through tool poses at equal distances.
 
-    ``limits`` and ``speed`` are those of ``plan``. Raises ``Unreachable``.
+    ``limits`` and ``speed`` have the same meaning as in ``plan``. Raises ``Unreachable``.
     """
     pairs = list(pairwise((present_pose(arm, joints), *poses)))
     length = sum(_length(one, other) for one, other in pairs)

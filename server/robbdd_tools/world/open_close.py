@@ -95,7 +95,7 @@ class OpenClose:
         except BehaviourError as error:
             raise BehaviourError(str(error).replace(opening.part, f"the handle of {name}")) from error
         hand.held = None
-        # A finger may be between the handle and the thing, with no more room than before.
+        # Open only as far as before the grip: a finger may be between the handle and the thing.
         yield from hand.gripper.open_to(hand, control)
         yield from hand.wait(round(hand.robot.model.release_time / TICK))
         yield from hand.move(hand.at_travel(hand.tool))

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 TOLERATED = 1e-3
-"""Depth (m) that a resting contact may have (docs/simulation.md)."""
+"""Resting contacts may be this deep (m) (docs/simulation.md)."""
 MAX_NAMED = 3
-"""Maximum overlaps named in one message."""
+"""Maximum number of overlaps that one message names."""
 
 
 class Overlap(SceneError):

@@ -86,7 +86,7 @@ def footprint(model: ObjectModel) -> float:
 
 
 def surface(model: ObjectModel) -> float:
-    """Return how high (m) above an object's origin its surface for other objects is, 0 without such a surface."""
+    """Return how high (m) above an object's origin its surface for other objects is, 0 if it has none."""
     return 0.0 if model.region is None else model.region.center[2] - model.region.half[2]
 
 

@@ -93,7 +93,7 @@ def either_way(arm: Arm, pose: ToolPose) -> tuple[ToolPose, ...]:
 def approaches(
     simulation: Simulation, robot: Robot, name: str, data: Any = None, missed: Obstruction | None = None
 ) -> Iterator[Approach]:
-    """Yield every grasp of an object within the joint limits, in the current state or in that of ``data``.
+    """Yield every grasp of an object within the joint limits, in the current state or in the state of ``data``.
 
     ``missed`` records how far other grasps are out of reach. Raises ``BehaviourError`` if the scene has no such object
     or the gripper is too small for it.

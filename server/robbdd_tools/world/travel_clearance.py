@@ -25,7 +25,7 @@ UPRIGHT = 0.999
 def height_over(simulation: Simulation, robot: Robot, name: str, start: ToolPose, goal: ToolPose) -> float:
     """Return the height (m) above the robot's base of the highest shape below the path of a carried object.
 
-    The path from ``start`` to ``goal`` is straight in cylinder coordinates, like that of a motion.
+    The path from ``start`` to ``goal`` is straight in cylinder coordinates, like the path of a motion.
     """
     radius = _radius(simulation, name)
     points = np.array(list(_points(robot, start, goal)))

@@ -23,7 +23,8 @@ def field_before(
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
     """Return centre and half edges (m) of the part of a table in front of a robot's base, ``None`` if there is none.
 
-    ``area`` (m) has four limits relative to the base: nearest and farthest ahead, lowest and highest to its left.
+    ``area`` (m) has four limits relative to the base: nearest and farthest ahead, rightmost and leftmost (left is
+    positive).
     """
     if model.region is None:
         return None
@@ -42,7 +43,7 @@ def field_before(
 def _field_before_end(
     base: Pose, table: Pose, region: Region, area: Numbers
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Do the same for a base beyond the left or right end of a table, which faces along the y axis."""
+    """Return the same for a base beyond the left or right end of a table, with its forward direction along y."""
     side = 1.0 if table.position[1] >= base.position[1] else -1.0
     (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
     y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
