@@ -29,7 +29,7 @@ class SceneSpec:
     """The contents of a scenario's world. All names are CURIEs, as in the text of the feature.
 
     - ``workspaces``: maps a workspace to the objects that carry it.
-    - ``contains``: maps a workspace to the workspaces inside it, such as a table's workspace to a bin's.
+    - ``contains``: maps a workspace to the workspaces inside it, for example a table's to the workspace of a bin.
     - ``places``: maps an object to the workspace where the Given clauses put it.
     - ``config``: the configurations that the Given clauses set.
     - ``unused``: the objects and agents that no clause mentions.
@@ -145,7 +145,7 @@ class ScenarioSpec:
 
     @property
     def chosen_scene(self) -> ChosenScene | None:
-        """The chosen scene instance, ``None`` if the scenario runs without one or in its execution's scene instance."""
+        """The chosen scene instance, ``None`` if the scenario runs without one or in that of its execution."""
         chosen = self.chosen_instance
         if chosen is None or chosen is not self.instance:
             return None
