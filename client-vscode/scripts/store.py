@@ -1,4 +1,4 @@
-"""Stores the members of a wheel without compression: the VSIX compresses it as one text, a quarter smaller."""
+"""Stores the members of a wheel without compression: it is then compressed as one text, which is much smaller."""
 
 import sys
 from io import BytesIO

@@ -4,7 +4,8 @@ import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSyn
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { afterEach, beforeEach, test } from "node:test";
-import { bundledWheel, discardAbandoned, freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
+import { brotliCompressSync } from "node:zlib";
+import { bundledWheel, discardAbandoned, freshFolder, installedServer, recordInstalled, unpackedWheel } from "../src/setup/environments";
 import { type Installation, InstallProblem, installServer } from "../src/setup/installer";
 import { failureOf, installation, packageProblem, progressOf, wantedPackage } from "../src/setup/steps";
 
@@ -65,13 +66,17 @@ test("without a setting, the bundled server is installed, with the extra for vid
   assert.deepEqual(wantedPackage(set, "1.2.3", "/ext/a.whl"), { name: set, requirement: set });
 });
 
-test("the wheel of the extension's own version is found, where there is one", () => {
+test("the wheel of the extension's own version is found, where there is one, and unpacked", () => {
   assert.equal(bundledWheel(join(folder, "nowhere"), "1.0"), undefined);
-  writeFileSync(join(folder, "robbdd_tools-0.9-py3-none-any.whl"), "");
+  writeFileSync(join(folder, "robbdd_tools-0.9-py3-none-any.whl.br"), "");
   assert.equal(bundledWheel(folder, "1.0"), undefined);
-  const wheel = join(folder, "robbdd_tools-1.0-py3-none-any.whl");
-  writeFileSync(wheel, "");
-  assert.equal(bundledWheel(folder, "1.0"), wheel);
+  const bundled = join(folder, "robbdd_tools-1.0-py3-none-any.whl.br");
+  writeFileSync(bundled, brotliCompressSync("the wheel"));
+  assert.equal(bundledWheel(folder, "1.0"), bundled);
+  const wheel = unpackedWheel(bundled, join(folder, "storage"));
+  assert.equal(wheel, join(folder, "storage", "wheel", "robbdd_tools-1.0-py3-none-any.whl"));
+  assert.equal(readFileSync(wheel, "utf8"), "the wheel");
+  assert.deepEqual(readdirSync(join(folder, "storage", "wheel")), ["robbdd_tools-1.0-py3-none-any.whl"]);
 });
 
 test("a package cannot be an option of the installer", () => {

@@ -1,12 +1,15 @@
 // Private environments of the server: folders in the extension's own storage, named after the creating process. An
 // environment is valid once its record is written, so an interrupted installation is never used.
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, renameSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { rm } from "node:fs/promises";
 import { basename, join } from "node:path";
+import { brotliDecompressSync } from "node:zlib";
 import { isRecord } from "../values";
 
 const PREFIX = "server-";
 const RECORD = "robbdd.json";
+/** The end of the name of a wheel that the extension bundles. */
+const COMPRESSED = ".whl.br";
 /** The latest one and its predecessor, which another window may still run. */
 const KEPT = 2;
 
@@ -23,14 +26,26 @@ interface Installed extends PrivateServer {
   readonly time: number;
 }
 
-/** The wheel of a version in a folder; undefined if the extension was packed without it. */
+/** The compressed wheel of a version in a folder; undefined if the extension was packed without it. */
 export function bundledWheel(folder: string, version: string): string | undefined {
   try {
-    const name = readdirSync(folder).find((file) => file.startsWith(`robbdd_tools-${version}-`) && file.endsWith(".whl"));
+    const name = readdirSync(folder).find((file) => file.startsWith(`robbdd_tools-${version}-`) && file.endsWith(COMPRESSED));
     return name && join(folder, name);
   } catch {
     return undefined;
   }
+}
+
+/** Decompress a bundled wheel into the extension's storage; return its path. Throws if this is impossible. */
+export function unpackedWheel(bundled: string, storage: string): string {
+  const folder = join(storage, "wheel");
+  mkdirSync(folder, { recursive: true });
+  const wheel = join(folder, basename(bundled, ".br"));
+  // Another window may install it at the same time.
+  const written = `${wheel}-${process.pid}`;
+  writeFileSync(written, brotliDecompressSync(readFileSync(bundled)));
+  renameSync(written, wheel);
+  return wheel;
 }
 
 /**

@@ -6,7 +6,7 @@ import type { Installed } from "../presentation";
 import { openServerSetting } from "../settings";
 import { surroundings } from "../surroundings";
 import { fits } from "../versions";
-import { type PrivateServer, bundledWheel, discardAbandoned, installedServer, workingFolder } from "./environments";
+import { type PrivateServer, bundledWheel, discardAbandoned, installedServer, unpackedWheel, workingFolder } from "./environments";
 import { InstallProblem, installServer } from "./installer";
 import { type Wanted, wantedPackage } from "./steps";
 
@@ -20,7 +20,7 @@ export class Setup {
   /**
    * @param storage the folder of the private environments
    * @param version version of the extension and of its server
-   * @param bundled the folder of the bundled wheel
+   * @param bundled the folder of the compressed wheel
    */
   constructor(
     private readonly storage: string,
@@ -78,9 +78,10 @@ export class Setup {
     });
   }
 
-  private wanted(): Wanted {
+  /** The package to install; `wheel` is the path of the unpacked wheel of the server. */
+  private wanted(wheel?: string): Wanted {
     const setting = vscode.workspace.getConfiguration("robbdd").get("server.package", "");
-    return wantedPackage(setting, this.version, bundledWheel(this.bundled, this.version));
+    return wantedPackage(setting, this.version, wheel);
   }
 
   private async installNow(): Promise<Installed> {
@@ -109,9 +110,10 @@ export class Setup {
     });
     try {
       const around = await surroundings(undefined, this.log);
+      const bundled = bundledWheel(this.bundled, this.version);
       const { command } = await installServer({
         storage: this.storage,
-        wanted: this.wanted(),
+        wanted: this.wanted(bundled && unpackedWheel(bundled, this.storage)),
         folders: searchFolders(around),
         python: around.python,
         signal: stop.signal,

@@ -26,7 +26,7 @@ export type Tool = { readonly kind: "uv"; readonly program: string } | { readonl
 /**
  * The package to install: that of the setting `robbdd.server.package`, else the server of the extension's own version.
  *
- * @param wheel path of the bundled wheel; without it the package index must have that version
+ * @param wheel path of the unpacked wheel; without it the package index must have that version
  */
 export function wantedPackage(setting: string, version: string, wheel?: string): Wanted {
   const own = `${DISTRIBUTION}==${version}`;
