@@ -171,3 +171,17 @@ def test_the_published_form_of_an_execution_is_read() -> None:
     (source,) = read.scene.models
     assert (source.format, source.name) == ("mjcf", "~/.cache/mj_kdl_wrapper/assets/pickplace.xml")
     assert sorted(one.code for one in model.diagnostics) == ["model-file", *["not-simulated"] * 4]
+
+
+@pytest.mark.parametrize(
+    "clause", ["<goal> is correct for <part>", "<robot> moves safely whenever <goal> is correct for <part>"]
+)
+def test_objects_without_a_correct_place_are_found_in_clauses_and_their_conditions(tmp_path: Path, clause: str) -> None:
+    asked = CELL.replace(
+        "<part> is located at <goal>, 0.5 seconds after <place-end>", f"{clause}, from <pick-start> until <place-end>"
+    )
+    assert asked != CELL
+    assert [message.split("'")[1] for _, message in found(tmp_path, asked)["no-correct-place"]] == [
+        "env:cube_a",
+        "env:cube_b",
+    ]

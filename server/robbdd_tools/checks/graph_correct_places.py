@@ -41,9 +41,8 @@ def _asked(variant: Variant) -> frozenset[str]:
             placeholders = (said[1].get(slot, "") for slot in ("object", "objects"))
             asked.update(str(clause.arguments[name]) for name in placeholders if name in clause.arguments)
         used: list[Fluent | Condition] = [clause] if isinstance(clause, Fluent) else []
-        condition = getattr(clause, "condition", None)
-        if condition is not None:
-            used.append(condition)
+        if isinstance(clause, Fluent | TextFluent):
+            used += clause.conditions
         for one in used:
             if one.predicate in WORDS:
                 slots = (one.arguments.get("object"), one.arguments.get("objects"))
