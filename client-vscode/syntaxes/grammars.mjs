@@ -75,6 +75,11 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
   phrases(DECLARE, "object", "workspace", "agent"),
   phrases(WORD, "of", "where", "and", "not"),
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])(with)\s+(${NAME}(?:\s*,\s*${NAME})*)`,
+    captures: { 1: { name: `${WORD}.robbdd` }, 2: { name: "variable.other.property.robbdd" } },
+  },
+  phrases(WORD, "with"),
   { match: String.raw`(?<![\p{L}\p{N}_-])${NAME}(?=\s*(?:!=|<=|>=|=|<|>)\s)`, name: "variable.other.property.robbdd" },
   ...valueWords,
 ]);

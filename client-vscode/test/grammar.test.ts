@@ -60,6 +60,16 @@ async function expectTokens(scope: string, text: string, ...expected: string[]):
   }
 }
 
+test("the columns of a set in a scene have the colour of properties", async () => {
+  await expectTokens(
+    "source.robbdd.scene",
+    "scene (ns=env) station { obj set <parts> with mass, light-colour ws set <places> }",
+    "with → keyword.other",
+    "mass, light-colour → variable.other.property",
+    "ws set → storage.type.declaration",
+  );
+});
+
 test("quantities, conditions and windows have their colours", async () => {
   const text = "c: holds(<r> moves slower than 0.25 m/s whenever <r> is nearer than 30cm to <b>, within 8 seconds after <e>)";
   await expectTokens(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.protocol.manifest_file import read_manifest
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
+ENTRY = "    obj set <cubes>"
 
 
 def robbdd(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -123,6 +125,37 @@ def test_a_template_that_makes_no_gherkin_is_told_so(folder: Path) -> None:
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("robbdd: own.feature.jinja: its output is not Gherkin: ")
     assert str(Path("out", "features", "fetching.feature")) in done.stderr
+
+
+@pytest.mark.physics
+def test_columns_of_properties_change_neither_the_manifest_nor_the_verdicts(tmp_path: Path) -> None:
+    scene = PICKPLACE.with_name("bench.scene").read_text(encoding="utf-8")
+    assert ENTRY in scene
+    shown: dict[str, Any] = {}
+    for name, chosen in (("plain", ENTRY), ("shown", f"{ENTRY} with mass")):
+        folder = tmp_path / name
+        folder.mkdir()
+        stated = scene.replace("count: 2 }", "count: 2  mass: 50 g }").replace(ENTRY, chosen)
+        (folder / "bench.scene").write_text(stated, encoding="utf-8")
+        shutil.copy(PICKPLACE, folder / "m.bdd")
+        assert robbdd("gherkin", "m.bdd", "-o", "out", "--first", "1", folder=folder).returncode == 0
+        shown[name] = json.loads((folder / "out" / "manifest.json").read_text(encoding="utf-8"))
+    assert shown["plain"] == shown["shown"]
+    (feature,) = (tmp_path / "shown" / "out" / "features").glob("*.feature")
+    text = feature.read_text(encoding="utf-8")
+    # A person adds a column of their own.
+    edited = re.sub(r"(?m)^( +\| env:\S+ \| .*\|)$", r"\1 A3 |", text).replace(" mass |", " mass | shelf |")
+    assert "| 50 g | A3 |" in edited
+    command = [sys.executable, "-m", "behave", "--no-color", str(feature)]
+    printed: list[str] = []
+    for written in (text, edited):
+        feature.write_text(written, encoding="utf-8")
+        done = subprocess.run(
+            command, capture_output=True, text=True, encoding="utf-8", cwd=feature.parent.parent, check=False
+        )
+        printed.append(done.stdout + done.stderr)
+    assert "1 scenario passed" in printed[0]
+    assert "1 scenario passed" in printed[1]
 
 
 def test_steps_are_printed_or_added_to_a_file(folder: Path) -> None:

@@ -155,6 +155,13 @@ BROKEN: dict[str, list[str]] = {
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red  size: 3  colour: blue, red }"),
         "//- lab.scene\n" + SCENE.replace("object nut", "object nut { colour: red colour: red size: 3 }"),
     ],
+    "table-column": [
+        "//- lab.scene\n"
+        + SCENE.replace("bolt, object nut", "bolt { colour: red }, object nut { mass: 3 g }").replace(
+            "obj set <parts> ws", f"obj set <parts> with {columns} ws"
+        )
+        for columns in ("color", "mass, color")
+    ],
     "published-form": [SCENE_IMPORT + PUBLISHED, _declared("Event spare\n")],
     "repeated-value": [
         story(LINES + "                var <fetch.part>: { <parts.bolt> }\n"),

@@ -50,6 +50,8 @@ DAMAGE: dict[str, list[str]] = {
     "composition-objects": ["+ lab:tray_comp env:has-object lab:panda"],
     "composition-workspace": ["+ lab:tray_comp env:of-workspace lab:bench_ws"],
     "composition-workspaces": ["+ lab:bench_comp env:has-workspace lab:nut"],
+    "column-property": ["+ lab:column a rbw:PropertyColumn", "+ lab:column rbw:of-set lab:parts"],
+    "column-set": ["+ lab:column a rbw:PropertyColumn", "+ lab:column rbw:of-set lab:nut"],
     "condition-role": ["- t:at bdd:clause-of", "+ t:at bdd:clause-of t:fetch-scenario-when"],
     "coordination-node-one": ["+ t:pick rbw:coordination-node t:fetch"],
     "correct-objects": ["+ lab:tray_ws rbw:correct-for lab:panda"],

@@ -57,6 +57,7 @@ from robbdd_tools.checks.setting import setting
 from robbdd_tools.checks.several_places import several_places
 from robbdd_tools.checks.simultaneous_agent import simultaneous_agent
 from robbdd_tools.checks.single_element import single_element
+from robbdd_tools.checks.table_column import table_column
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
 from robbdd_tools.checks.unused_import import unused_import
@@ -123,6 +124,7 @@ FILE_RULES = (
     published_form,
     python_source,
     several_places,
+    table_column,
     unused_event,
     unused_import,
     unused_predicate,

@@ -69,12 +69,10 @@ def _findings(site: Site, ref: tree.Ref, where: tree.Where) -> Iterator[Diagnost
         )
         yield finding(site, where, Severity.ERROR, CODE, message)
         return
-    elements = elements_of(site.follow(ref))
+    known = properties_in(site, site.follow(ref))
     conditions = conditions_of(site.placed, where)
-    if not elements or conditions is None:
+    if not known or conditions is None:
         return  # Other rules report an empty set and an unknown name.
-    everything = properties_by_element(site.snapshot, site.uri)
-    known = [(element.name, everything.get(iri_of(site, element), {})) for element in elements]
     found = [
         one for pair in zip(where.conditions, conditions, strict=True) for one in _condition(site, ref, *pair, known)
     ]
@@ -93,11 +91,7 @@ def _condition(
     name = condition.name
     values = [value for _, has in known for value in has.get(name, ())]
     if not values:
-        near = similar(name, sorted({other for _, has in known for other in has}))[:MAX_OFFERED]
-        hint = f"did you mean '{near[0]}'?" if near else "state it in the scene, or in an imported graph"
-        fixes = tuple(change(site, f"Change to '{one}'", written.name, one) for one in near)
-        message = f"no element of '{ref.path}' has the property '{name}': {hint}"
-        yield finding(site, written.name, Severity.ERROR, CODE, message, fixes=fixes)
+        yield unknown_property(site, ref, written.name, known, Severity.ERROR, CODE)
         return
     other = next((value for value in values if not condition.compares(value)), None)
     if other is not None:
@@ -115,6 +109,24 @@ def _condition(
         shown = listed(lacking[:MAX_OFFERED]) + (" and others" if len(lacking) > MAX_OFFERED else "")
         message = f"{shown} of '{ref.path}' without a '{name}' cannot be selected: state the property for each element"
         yield finding(site, written.name, Severity.INFORMATION, CODE, message)
+
+
+def unknown_property(
+    site: Site, ref: tree.Ref, name: tree.Name, known: Known, severity: Severity, code: str
+) -> Diagnostic:
+    """Return the finding on a property that no element of a set has, with similar names as fixes."""
+    near = similar(name.text, sorted({other for _, has in known for other in has}))[:MAX_OFFERED]
+    hint = f"did you mean '{near[0]}'?" if near else "state it in the scene, or in an imported graph"
+    fixes = tuple(change(site, f"Change to '{one}'", name, one) for one in near)
+    message = f"no element of '{ref.path}' has the property '{name.text}': {hint}"
+    return finding(site, name, severity, code, message, fixes=fixes)
+
+
+def properties_in(site: Site, declared: Site | None) -> Known:
+    """Return the elements of the set that ``declared`` declares, with what ``site`` knows of them; empty if unknown."""
+    everything = properties_by_element(site.snapshot, site.uri)
+    elements = elements_of(declared) or ()
+    return [(element.name, everything.get(iri_of(site, element), {})) for element in elements]
 
 
 def _values(site: Site, where: tree.Where, conditions: tuple[PropertyCondition, ...], known: Known) -> Iterator[Fix]:

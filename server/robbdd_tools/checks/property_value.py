@@ -9,7 +9,8 @@ from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.removals import removal
 from robbdd_tools.checks.finding import article, finding, related_to, written_text
-from robbdd_tools.graph.property_facts import Fact, declared_facts, property_name
+from robbdd_tools.graph.property_facts import Fact, declared_facts
+from robbdd_tools.graph.rdf.property_terms import property_name
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

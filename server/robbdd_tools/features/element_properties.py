@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.property_values import ELEMENT, TEXT, PropertyValue
 from robbdd_tools.base.quantity_units import UNITS
+from robbdd_tools.checks.table_column import FIRST_COLUMN
 from robbdd_tools.features.markdown import code, literal
 from robbdd_tools.graph.property_facts import Fact, declared_facts, facts
 
 if TYPE_CHECKING:
+    from robbdd_tools.checks.property_condition import Known
     from robbdd_tools.features.cursor import Cursor
     from robbdd_tools.names.analysis import PlacedDeclaration
     from robbdd_tools.names.definition import Definition
@@ -34,6 +36,11 @@ _LABELS = ("name", "count", "for")
 """Words before a colon that are not names of properties."""
 
 
+COLUMNS = re.compile(rf"\b(obj|ws|agn)\s+set\s*<([\w\-.]+)>\s*with\s+((?:{_NAME}\s*,\s*)*)\Z")
+"""The end of a text after which a property is chosen as a column: the kind and the name of the set, and the properties
+chosen before."""
+
+
 def name_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[tuple[str, str]]:
     """Yield the properties that may be stated at a cursor, each with its values in words.
 
@@ -44,6 +51,20 @@ def name_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[tuple
     for name, values in sorted(_known_values(snapshot, uri, cursor).items()):
         if name not in stated:
             yield name, _in_words(values)
+
+
+def column_choices(known: Known, chosen: str) -> Iterator[tuple[str, str]]:
+    """Yield the properties of a set's elements that may be a column, each with its values in words.
+
+    ``chosen`` is the text of the columns chosen before, which are left out.
+    """
+    found: dict[str, dict[str, None]] = {}
+    for _, properties in known:
+        for name, values in properties.items():
+            texts = (written(value) for value in values if value.kind != ELEMENT)
+            found.setdefault(name, {}).update(dict.fromkeys(texts))
+    for name in sorted(found.keys() - {FIRST_COLUMN, *_WORD.findall(chosen)}):
+        yield name, _in_words(list(found[name]))
 
 
 def value_choices(snapshot: Snapshot, uri: str, cursor: Cursor) -> Iterator[str]:

@@ -98,6 +98,10 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
             ).contains(offset):
                 found = describe_property(snapshot, uri, node.name.text)
                 return None if found is None else Hover(found, node.name.span.shifted(placed.offset))
+            if isinstance(node, tree.Columns):
+                name = next((one for one in node.names if one.span.shifted(placed.offset).contains(offset)), None)
+                found = None if name is None else describe_property(snapshot, uri, name.text)
+                return None if name is None or found is None else Hover(found, name.span.shifted(placed.offset))
             if isinstance(node, tree.Emission):
                 return Hover(emission_meaning(node), span)
     return None

@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
+from robbdd_tools.checks.property_condition import properties_in
 from robbdd_tools.checks.setting import may_have
-from robbdd_tools.features.element_properties import CONDITION, name_choices, value_choices
+from robbdd_tools.features.element_properties import (
+    COLUMNS,
+    CONDITION,
+    column_choices,
+    name_choices,
+    value_choices,
+)
 from robbdd_tools.features.expected_words import place_after
 from robbdd_tools.features.literals import facts_in_clause, facts_of_variable, without_number
 from robbdd_tools.features.predicate_phrases import phrase_form
@@ -28,6 +35,7 @@ from robbdd_tools.features.value_types import (
     values_wanted,
     variable_of_value,
 )
+from robbdd_tools.names.elements import Site, site_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
 from robbdd_tools.names.uses import ANYTHING, ELEMENTS, Kinds
@@ -48,6 +56,7 @@ MAX_TO_IMPORT = 300
 """Maximum number of proposed names that need an import; loaded files and files in the same folder come first."""
 _CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
 _EMITTED = re.compile(r"\bemits\s+\Z")
+_SET_ROLES = {"obj": "ObjectSet", "ws": "WorkspaceSet", "agn": "AgentSet"}
 _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
 
 
@@ -92,6 +101,8 @@ class Names:
             return
         if "PropertyNameText" in place.expected.rules:
             yield from self.properties()
+        if "ColumnNameText" in place.expected.rules:
+            yield from self.columns()
         if "WordText" in place.expected.rules:
             yield from self.property_values()
         if "NameText" in place.expected.rules:
@@ -155,6 +166,21 @@ class Names:
             yield Completion(
                 name, "property", values, f"{name}{ending}", self.cursor.span, self.whole, origin=(uri, name)
             )
+
+    def columns(self) -> Iterator[Completion]:
+        """Yield the properties of a set's elements that the tables of features can show."""
+        match, placed = COLUMNS.search(self.cursor.before), self.cursor.placed
+        if match is None:
+            return
+        kind, name, chosen = match.groups()
+        uri = self.file.document.uri
+        scope = self.snapshot.scope(uri)
+        found = scope.visible(ROLE_KINDS[_SET_ROLES[kind]], self.cursor.scopes).get(name)
+        if found is None or placed is None:
+            return
+        known = properties_in(Site(self.snapshot, self.file, placed), site_of(self.snapshot, scope.define(*found)))
+        for choice, values in column_choices(known, chosen):
+            yield Completion(choice, "property", values, choice, self.cursor.span, self.whole, origin=(uri, choice))
 
     def property_values(self) -> Iterator[Completion]:
         """Yield the values that the property at the cursor has elsewhere in the model."""

@@ -281,6 +281,8 @@ def _names(node: tree.Node) -> Iterator[tuple[tree.Node, str]]:
             yield node.name, PROPERTY
             if isinstance(node.value, tree.Text | tree.Truth):
                 yield node.value, STRING if isinstance(node.value, tree.Text) else KEYWORD
+        case tree.Columns():
+            yield from ((name, PROPERTY) for name in node.names)
         case tree.Property():
             yield node.name, PROPERTY
             yield from ((value, STRING) for value in node.values if isinstance(value, tree.Text))

@@ -223,9 +223,15 @@ class _VariantWriter:
 
     def _outline(self) -> Outline | None:
         """Return the outline of the scenarios; ``None`` if clauses add elements, as their table has several rows."""
-        if not self._members.issuperset(self._named):
+        if not self._members.issuperset(self._named) or self._tables_have_placeholders():
             return None
         return outline(self._writer, self._clauses, self._variant.variation, self._members)
+
+    def _tables_have_placeholders(self) -> bool:
+        """Return whether an outline would replace a part of a property's value, such as ``<part>``."""
+        placeholders = [f"<{variable_name(variable)}>" for variable in self._variant.variation.variables]
+        cells = (cell for table in self._tables for row in table.rows for cell in row)
+        return any(placeholder in cell for cell in cells for placeholder in placeholders)
 
     def scenario(self, number: int, values: Binding) -> ScenarioText:
         """Return one scenario, without its lines in a feature."""

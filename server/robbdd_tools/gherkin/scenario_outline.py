@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 from robbdd_tools.gherkin import text
-from robbdd_tools.gherkin.background_tables import SceneTable, elements_of
+from robbdd_tools.gherkin.background_tables import SceneTable, elements_of, name_table
 from robbdd_tools.gherkin.binding import UnknownElements
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.words import Placeholder
@@ -57,7 +57,7 @@ def outline(
         if len(kinds) > 1 or kinds == {None}:
             return None
         added += [f"<{name}>"] if kinds == {True} else []
-    tables = (SceneTable("variable scene elements", tuple(added)),) if added else ()
+    tables = (name_table("variable scene elements", added),) if added else ()
     tags = tuple(text.tag("clause", clause) for clause in dict.fromkeys(step.clause for step in steps))
     return Outline(tags, tables, steps)
 

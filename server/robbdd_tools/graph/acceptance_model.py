@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from robbdd_tools.base.selections import SelectionRule
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
+from robbdd_tools.graph.shown_properties import Column
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
 
@@ -213,7 +214,7 @@ class SceneModel:
     """The members of a variant's scene in written order.
 
     ``carriers`` maps a workspace to the objects that carry it. ``contains`` maps a workspace to the workspaces inside
-    it.
+    it. ``columns`` are the properties that the tables of its members show.
     """
 
     objects: tuple[Iri, ...]
@@ -221,6 +222,7 @@ class SceneModel:
     agents: tuple[Iri, ...]
     carriers: Mapping[Iri, tuple[Iri, ...]]
     contains: Mapping[Iri, tuple[Iri, ...]]
+    columns: tuple[Column, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

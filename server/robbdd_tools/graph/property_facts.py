@@ -5,7 +5,6 @@ In a model, a property is known by its name without the namespace: ``colour`` st
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,24 +13,14 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.base.property_conditions import TRUE, Properties, PropertyCondition
 from robbdd_tools.base.property_values import ELEMENT, NUMBER, TEXT, TRUTH, PropertyValue, quantity_value
-from robbdd_tools.catalog.term_prefixes import PREFIXES
-from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
+from robbdd_tools.graph.rdf.property_terms import property_name, value_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import MAX_COPIES
 
 if TYPE_CHECKING:
-    from rdflib.term import Node
-
     from robbdd_tools.graph.write.imported_graphs import ImportedGraph
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
-
-_OF_VOCABULARIES = (*PREFIXES.values(), "http://www.w3.org/2000/01/rdf-schema#", "http://www.w3.org/2002/07/owl#")
-"""Namespaces whose properties are not properties of elements."""
-_LOCAL = re.compile(r"[^\W\d][\w\-]*\Z")
-_NUMBERS = tuple(
-    expand(f"xsd:{kind}") for kind in ("integer", "decimal", "double", "float", "int", "nonNegativeInteger")
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,27 +36,6 @@ class Fact:
     name: str
     value: PropertyValue
     written: tree.Property | None = None
-
-
-def property_name(term: str) -> str | None:
-    """Return the name of a property with the given IRI; ``None`` for terms of RDF and of the published vocabulary."""
-    match = _LOCAL.search(term, max(term.rfind(sign) for sign in "/#:") + 1)
-    return None if match is None or term[: match.start()] in _OF_VOCABULARIES else match[0]
-
-
-def value_of(node: Node) -> PropertyValue | None:
-    """Return the value that a node of a graph denotes; ``None`` for a blank node."""
-    from rdflib import BNode, Literal
-
-    text = str(node)
-    if not isinstance(node, Literal):
-        return None if isinstance(node, BNode) else PropertyValue(ELEMENT, text)
-    kind = str(node.datatype or "")
-    if kind == QUANTITY:
-        return quantity_value(text)
-    if kind == expand("xsd:boolean"):
-        return PropertyValue(TRUTH, {"1": "true", "0": "false"}.get(text, text))
-    return PropertyValue(NUMBER if kind in _NUMBERS else TEXT, text)
 
 
 def facts(snapshot: Snapshot, uri: str) -> Iterator[Fact]:

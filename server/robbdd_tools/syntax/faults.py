@@ -20,6 +20,7 @@ LONGEST_WORD = 40
 
 _RULE_WORDS = {
     "NameText": "a name",
+    "ColumnNameText": "a property",
     "TextLiteral": "a string in quotes",
     "NumberLiteral": "a number",
     "TableRule": "the rule '|---|'",

@@ -30,6 +30,7 @@ HOLE = "\u02ad"
 NOTHING = 'pred("")'
 """A predicate without content; no rule checks it."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
+_UNFINISHED_COLUMNS = re.compile(r"(\bwith|,)\s*\Z")
 _JOINING = re.compile(r"(?:\s|//[^\n]*\n)*(?:and|or)\b")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
 _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
@@ -135,6 +136,7 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     yield from _parentheses(language, text, stopped)
     yield from _text_predicate(text, stopped)
     yield from _single_values(text, offset)
+    yield from _missing_column(text, stopped)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
     if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
         yield from _hole(text, offset)
@@ -162,6 +164,13 @@ def _single_values(text: str, offset: int) -> Iterator[Repair]:
     found = _SET_OF_VALUES.search(text, max(0, offset - 200), offset)
     if found:
         yield _blanked(text, Span(*found.span("set")))
+
+
+def _missing_column(text: str, stopped: Rejected) -> Iterator[Repair]:
+    """Leave out 'with', or the comma after a column, where the name of a property is missing."""
+    found = _UNFINISHED_COLUMNS.search(text, max(0, stopped.offset - 200), stopped.offset)
+    if found and "ColumnNameText" in stopped.expected.rules:
+        yield _blanked(text, Span(*found.span(1)))
 
 
 def _parentheses(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:

@@ -129,14 +129,22 @@ class Where(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Columns(Node):
+    """``with mass, colour``: the properties that the tables of features show."""
+
+    names: tuple[Name, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Link(Node):
     """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``. Its role states the kind.
 
-    ``where`` selects elements of a set.
+    ``where`` selects elements of a set. Only a set in a scene has ``columns``.
     """
 
     reference: Ref
     where: Where | None
+    columns: Columns | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,7 +141,7 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
         lambda raw, span, text: _by_fields(tree.Member, raw, span, text, details=_value(raw.properties, text)),
     ),
     "Workspace": _given(tree.Member),
-    **dict.fromkeys(("ModuleName", "PhraseWord", "PropertyName"), _given(tree.Name)),
+    **dict.fromkeys(("ModuleName", "PhraseWord", "PropertyName", "ColumnName"), _given(tree.Name)),
     "Subject": _inner("parameter"),
     "Truth": lambda raw, span, _: tree.Truth(span, raw.word == "true"),
     "Word": lambda raw, span, _: tree.Text(span, raw.text),
@@ -175,7 +175,10 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
             "TargetAgent",
         ),
         lambda raw, span, text: tree.Link(
-            span, convert(raw.reference, text), _value(getattr(raw, "where", None), text)
+            span,
+            convert(raw.reference, text),
+            _value(getattr(raw, "where", None), text),
+            _value(getattr(raw, "columns", None), text),
         ),
     ),
     "PropertyComparison": _given(tree.PropertyCondition),

@@ -105,6 +105,7 @@ from robbdd_tools.syntax.predicate_tree import (
 )
 from robbdd_tools.syntax.scene_tree import (
     CatalogEntry,
+    Columns,
     Composition,
     CorrectFor,
     ElementSet,
@@ -203,6 +204,7 @@ __all__ = [
     "Camera",
     "CatalogEntry",
     "ChunkTree",
+    "Columns",
     "Composition",
     "Conjunction",
     "ConstantSet",

@@ -23,6 +23,7 @@ from robbdd_tools.graph.read.behaviour_trees import read_trees
 from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_names
 from robbdd_tools.graph.read.executions import read_executions, read_implementations
 from robbdd_tools.graph.read.instances import InstanceReader, Places
+from robbdd_tools.graph.read.scene_columns import read_columns
 from robbdd_tools.graph.read.variations import VariationReader
 
 if TYPE_CHECKING:
@@ -170,6 +171,7 @@ class _Reader:
             tuple(members["agent"]),
             {workspace: tuple(objects) for workspace, objects in carriers.items()},
             {workspace: tuple(inner) for workspace, inner in contains.items()},
+            tuple(read_columns(self.records, variant, {member for kind in members.values() for member in kind})),
         )
 
     def _compositions(self, variant: Iri, workspaces: tuple[Iri, ...]) -> tuple[Iri, ...]:

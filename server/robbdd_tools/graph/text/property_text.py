@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.rdf.records import Incomplete
+from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.rdf.vocabulary import QUANTITY, expand
 from robbdd_tools.graph.text.names import NAME, Names, quoted
 
 if TYPE_CHECKING:
     from rdflib.term import Node
+
+    from robbdd_tools.graph.rdf.records import Records
 
 SET_BY_PROPERTY = "rbw:SetByProperty"
 TRUTHS = ("true", "false")
@@ -30,6 +32,17 @@ def value_text(names: Names, value: Node) -> str | None:
         return text if NAME.fullmatch(text) and text not in TRUTHS else quoted(text)
     written = names.value(value) if kind in _NUMERIC else None
     return None if written is None or written.startswith('"') else written
+
+
+def column_names(records: Records, scene: str) -> dict[str, list[str]]:
+    """Return the properties, by set, that the tables of a scene show; without those that the language cannot write."""
+    found: dict[str, list[str]] = {}
+    for column in map(str, items_of(records, scene, "rbw:table-columns")):
+        name = records.text(column, "rbw:property-name")
+        for set_ in records.iris(records.all(column, "rbw:of-set")):
+            if NAME.fullmatch(name):
+                found.setdefault(set_, []).append(name)
+    return found
 
 
 def base_of(names: Names, node: str) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.graph.rdf.records import Incomplete, elements_of, items_of
 from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
 from robbdd_tools.graph.text.names import NAME, Names, braces, indented
-from robbdd_tools.graph.text.property_text import SET_BY_PROPERTY, base_of, set_reference, value_text
+from robbdd_tools.graph.text.property_text import SET_BY_PROPERTY, base_of, column_names, set_reference, value_text
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import Iri
@@ -177,9 +177,15 @@ class SceneText:
     def _scene(self, node: str, entries: tuple[object, ...]) -> str:
         self.names.declare(node, "scene")
         self.scenes[node] = self.names.reference(node)
-        lines = "\n".join(self._entry(str(entry)) for entry in entries)
+        columns = column_names(self.names.records, node)
+        lines = "\n".join(self._shown(str(entry), columns) for entry in entries)
         body = f"\n{indented(lines)}\n" if lines else " "
         return f"scene {self.names.scope_of(node)} {self.names.paths[node]} {{{body}}}"
+
+    def _shown(self, node: str, columns: dict[str, list[str]]) -> str:
+        """Return an entry of a scene. The columns of a set are written once."""
+        names = columns.pop(node, ())
+        return f"{self._entry(node)} with {', '.join(names)}" if names else self._entry(node)
 
     def _of(self, variant: Iri) -> Iterator[str]:
         """Yield a generated scene for a variant whose scene the graph does not name."""

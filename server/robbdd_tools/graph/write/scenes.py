@@ -233,6 +233,22 @@ def add_scene(frame: Frame, scenes: Scenes, declared: tree.Scene) -> None:
     scenes.scenes[node] = tuple(entries)
     frame.sink.add_types(node, ["bdd:Scene"], frame.at(declared.name))
     frame.sink.add(node, "rbw:entries", frame.sink.make_list(entries))
+    columns = list(_columns(frame, node, declared))
+    if columns:
+        frame.sink.add(node, "rbw:table-columns", frame.sink.make_list(columns))
+
+
+def _columns(frame: Frame, scene: URIRef, declared: tree.Scene) -> Iterator[URIRef]:
+    """Add the columns of the tables that list a scene's elements, and yield them in written order."""
+    sink = frame.sink
+    stated = ((entry, name) for entry in declared.entries if entry.columns for name in entry.columns.names)
+    for number, (entry, name) in enumerate(stated, start=1):
+        node, target = sink.iri(f"{scene}.column-{number}"), frame.target(entry.reference)
+        if node is not None and target is not None:
+            sink.add_types(node, ["rbw:PropertyColumn"], frame.at(name))
+            sink.add(node, "rbw:property-name", sink.literal(name.text), frame.at(name))
+            sink.add(node, "rbw:of-set", target, frame.at(entry.reference))
+            yield node
 
 
 def _entry_kind(entry: tree.Link) -> str:
