@@ -13,6 +13,7 @@ from robbdd_tools.base.property_values import NUMBER, TEXT, PropertyValue
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.layout import lay_out
+from robbdd_tools.features.semantic_tokens import PROPERTY, semantic_tokens
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 
@@ -160,6 +161,22 @@ def test_hover_describes_the_property_and_the_word() -> None:
         shown = hover(case.snapshot, case.uri, case.cursor)
         assert shown is not None
         assert expected in shown.markdown
+
+
+def test_the_first_column_is_not_repeated() -> None:
+    assert rows(feature(MODEL, scene=scene("with name, mass, mass")))[:2] == ["| name | mass |", "| env:bolt | 20 g |"]
+
+
+def test_columns_have_the_colour_of_properties() -> None:
+    case = fixture(f"//- lab.scene\n{scene('with mass, colour', COLOURED)}")
+    source = case.project.texts()[case.uri][1]
+    start = source.index("with mass")
+    found = {
+        source[one.span.start : one.span.end]: one.concept
+        for one in semantic_tokens(case.snapshot, case.uri)
+        if one.span.start >= start
+    }
+    assert (found["mass"], found["colour"]) == (PROPERTY, PROPERTY)
 
 
 def test_columns_stay_with_their_set_when_laid_out() -> None:
