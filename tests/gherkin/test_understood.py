@@ -31,6 +31,7 @@ from robbdd_tools.graph.acceptance_model import (
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.judging.parsed_sentences import read_step
+from robbdd_tools.judging.scenario_clauses import named_predicates
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.names.project import Project
 from robbdd_tools.protocol import clauses as stated
@@ -167,5 +168,7 @@ def test_every_sentence_of_the_examples_says_what_its_clause_states(model: Path)
     for story in criteria.stories:
         for variant in story.variants:
             values = next(bindings(variant.variation))
-            for step in writer.steps((*variant.template.clauses, *variant.clauses), values):
-                assert read(step.text, step.role) == bare(step.statement)
+            steps = list(writer.steps((*variant.template.clauses, *variant.clauses), values))
+            named = named_predicates(step.statement for step in steps)
+            for step in steps:
+                assert bare(read_step(step.role, step.text, named=named)) == bare(step.statement)

@@ -69,7 +69,9 @@ def has_only_written_names(language: str, text: str) -> bool:
 
 @pytest.mark.parametrize(("language", "text"), SOUND, ids=lambda value: str(value)[:30])
 def test_names_of_sound_declarations_are_found_quickly(language: str, text: str) -> None:
-    assert agrees(language, text) == (has_only_written_names(language, text) and not text.startswith("similar"))
+    # The elements of a similar set are not written, and a named predicate may have a parameter before its name.
+    is_parsed = text.startswith(("similar", "Predicate"))
+    assert agrees(language, text) == (has_only_written_names(language, text) and not is_parsed)
 
 
 @given(st.sampled_from(SOUND), st.lists(EDITS, min_size=1, max_size=2))

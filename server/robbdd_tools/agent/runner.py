@@ -128,7 +128,7 @@ class Features:
         for line in orders:
             index = decode_request(line).index
             spec = self._manifest.scenarios[index]
-            register_named(named_predicates(spec))
+            register_named(named_predicates(clause.statement for clause in spec.clauses))
             tree = spec.tree
             if self._tree is not None and self._tree != tree:
                 self._end_descendants()

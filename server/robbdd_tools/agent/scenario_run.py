@@ -87,7 +87,7 @@ class ScenarioRun:
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._known = {clause.line: clause for clause in spec.clauses}
         self._wording = wording
-        named = named_predicates(spec)
+        named = named_predicates(clause.statement for clause in spec.clauses)
         steps = {line: stated_by_step(role, text, self._known.get(line), wording, named) for line, role, text in texts}
         self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
         self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -69,10 +69,10 @@ def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
     return judged_clause(statement, known, spec)
 
 
-def named_predicates(spec: ScenarioSpec) -> tuple[Predicate, ...]:
-    """Return the predicates that the model of a scenario defines and its clauses use, one for each sentence."""
+def named_predicates(statements: Iterable[Statement | None]) -> tuple[Predicate, ...]:
+    """Return the predicates that a model defines and statements use, one for each sentence."""
     found: dict[str, Predicate] = {}
-    for statement in (clause.statement for clause in spec.clauses):
+    for statement in statements:
         fluents = (
             () if statement is None or isinstance(statement, BehaviourCall | EventOccurrence) else leaves_of(statement)
         )
