@@ -39,7 +39,7 @@ COMMANDS = (
     "compare latest latest --store out/runs",
     "report latest -o out/report.html --store out/runs",
     "evidence pack latest -o out/evidence.zip --store out/runs",
-    "evidence verify out/evidence.zip",
+    "evidence verify out/evidence.zip --user-code",
     "study run one.study --store out/studies",
     "study export one.study -o out/rows.csv --store out/studies",
     "study outcomes one.study --plot out/outcomes.svg --store out/studies",

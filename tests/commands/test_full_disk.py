@@ -55,7 +55,9 @@ def test_a_run_ends_with_the_reason_keeps_what_it_showed_and_can_be_resumed(fold
         # The cube's two scenarios are first.
         shown = ""
         while len(holding(shown)) < 2:
-            shown += process.stdout.readline()
+            line = process.stdout.readline()
+            assert line, "the run has ended"
+            shown += line
         fill_disk(store / "filler")
         (folder / "open").touch()
         rest, errors = process.communicate()

@@ -21,6 +21,7 @@ pytestmark = pytest.mark.physics
 KNOWN_BEFORE = {
     "no-model": r"there is no model for (object|agent) ",
     "no-evaluator": r"no step definition for ",
+    "catalog-phrase": r"no step definition for ",
     "no-emitter": r"nothing in the scenario emits ",
     "not-simulated": r"the ROS action '|its verdicts come from the ROS topic |no ROS",
     "setting": r"there is no configuration '|cannot be (configured: |'.*': it must be )| has no \w+: it applies to ",

@@ -24,8 +24,8 @@ def catalog_phrase(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
         if said is not None:
             predicate, written = said
             message = (
-                f"this text is judged as '{predicate.phrase}', if its values fit: write the phrase itself, so that "
-                "they are checked while editing"
+                f"this text is judged as '{predicate.phrase}' if its values fit, and is unknown otherwise: write the "
+                "phrase itself, so that they are checked while editing"
             )
             fix = _fix(file, found, written)
             yield Diagnostic(file.document.uri, found.span, Severity.INFORMATION, CODE, message, fixes=(fix,))
