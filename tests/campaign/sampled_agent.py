@@ -60,6 +60,7 @@ def sampled_agent(folder: str) -> None:
         before, rounds = 0.0, 0
         while not ended.wait(PERIOD):
             now = clock_gettime(clock)
+            # The only way to the stack of another thread.
             frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]
             counts[cause(frames.get(main))] += now - before
             before, rounds = now, rounds + 1

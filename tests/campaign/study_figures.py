@@ -65,6 +65,7 @@ def causes(number: int) -> None:
         (folder / "robbdd.toml").touch()
         path = folder / "p.study"
         path.write_text(TRACED.format(number), encoding="utf-8")
+        # Agents are started by it; no public name replaces it.
         whole = interpreter._command  # pyright: ignore[reportPrivateUsage]
 
         def command(*arguments: str) -> Sequence[str]:

@@ -95,6 +95,7 @@ def verify_bundle(path: Path, *, digest: str = "", user_code: bool = False) -> V
             holding = sum(one.verdict == "holds" for one in results)
             stated = {name: str(found.get(name, "")) for name in ("robbdd", "simulator", "model")}
             return Verification(files.digest, **stated, executions=len(results), holding=holding, checks=tuple(checks))
+    # zipfile raises NotImplementedError for a compression that it does not know.
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError) as error:
         raise NotABundle(f"{path} is not a bundle of evidence, or it is damaged: {error}") from error
 
