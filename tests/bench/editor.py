@@ -204,8 +204,8 @@ def _starts() -> tuple[str, str]:
             spent.append(client.processor_time() or 0.0)
     own, computing = statistics.median(seconds), statistics.median(spent)
     libraries = statistics.median(_import_time("pygls.lsp.server") for _ in range(STARTS))
-    told = f"{computing:.2f} s of which the server computes, {computing / libraries:.1f} × as long as importing pygls"
-    return "start to first diagnostics", f"{own:.2f} s, {told}; {PEER['start']}"
+    note = f"{computing:.2f} s of which the server computes, {computing / libraries:.1f} × as long as importing pygls"
+    return "start to first diagnostics", f"{own:.2f} s, {note}; {PEER['start']}"
 
 
 def _import_time(module: str) -> float:
@@ -253,8 +253,8 @@ def _judged(message: Message) -> tuple[int, int] | None:
     """Return the scenario and the line of the clause whose verdict a message contains."""
     if message.get("method") != "robbdd/runMessage":
         return None
-    told: Message = message["params"]["message"]
-    return (told["index"], told["line"]) if told["type"] == "ClauseJudged" else None
+    note: Message = message["params"]["message"]
+    return (note["index"], note["line"]) if note["type"] == "ClauseJudged" else None
 
 
 def _refresh_behind(clauses: Collection[tuple[int, int]]) -> Callable[[Message], bool]:
@@ -286,9 +286,9 @@ def _status() -> Iterator[tuple[str, str]]:
             # The answer may arrive before the last refresh.
             client.wait(_refresh_behind(decided))
             heard = client.heard()
-    told = {clause: came for came, message in heard if (clause := _judged(message)) is not None}
+    note = {clause: came for came, message in heard if (clause := _judged(message)) is not None}
     refreshed = [came for came, message in heard if message.get("method") == REFRESH]
-    messages = Times([told[clause] - at for clause, at in decided.items()], [])
-    hints = Times([min(came for came in refreshed if came > told[clause]) - at for clause, at in decided.items()], [])
+    messages = Times([note[clause] - at for clause, at in decided.items()], [])
+    hints = Times([min(came for came in refreshed if came > note[clause]) - at for clause, at in decided.items()], [])
     yield f"event in simulation to the client's run message, {len(decided)} clauses", str(messages)
     yield f"event in simulation to the refresh of hints, {len(decided)} clauses", str(hints)
