@@ -26,8 +26,28 @@ def test_an_unemitted_event_is_reported_where_a_clause_waits_for_it() -> None:
     assert finding.severity is Severity.WARNING
     for name in ("start", "end", "pick-start", "place-end", "pick-end", "place-start"):
         assert f"'{name}'" in finding.message
-    assert {fix.edits[0].text for fix in finding.fixes} <= {"start", "end", "pick-start", "place-end"}
-    assert len(finding.fixes) == 3
+    renamed = [fix.edits[0].text for fix in finding.fixes if fix.title.startswith("Change to")]
+    assert set(renamed) <= {"start", "end", "pick-start", "place-end"}
+    assert len(renamed) == 3
+
+
+@pytest.mark.parametrize("moment", ["pick-start", "pick-end", "place-start", "place-end"])
+def test_a_fix_lets_the_behaviour_emit_the_event(moment: str) -> None:
+    text = waiting("parked")
+    (finding,) = found(text, CODE)
+    (fix,) = [fix for fix in finding.fixes if f"emits {moment} as" in fix.title]
+    (edit,) = fix.edits
+    fixed = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    assert f"places at <goal> emits {moment} as <parked>" in fixed
+    assert found(fixed, "syntax", CODE) == []
+
+
+def test_no_fix_lets_a_template_of_another_file_emit_an_event_that_it_may_not_know() -> None:
+    imported = f"//- template.bdd\n{EVENTS}{TEMPLATE}"
+    story = DECLARED.format("parked").replace(EVENTS, "") + STORY.replace("variation:", VARIANT_THEN.format("parked"))
+    main = f'//- main.bdd\nimport "template.bdd"\nimport "lab.scene"\nns t = \'https://example.org/t/\'\n{story}'
+    (finding,) = found(f"{main}{imported}//- lab.scene\n{SCENE}", CODE)
+    assert [fix.title for fix in finding.fixes if "emit" in fix.title] == []
 
 
 @pytest.mark.parametrize("event", ["evt-pick-end", "E_PLACE_START", "pickEnd", "pick_ended", "PlaceStarted"])

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.diagnostic import Edit, Fix, Severity
+from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import MAX_OFFERED, change, finding
@@ -49,13 +50,13 @@ def no_emitter(site: Site) -> Iterator[Diagnostic]:
     root = site.tree
     if isinstance(root, tree.Template):
         if site.whole(root):
-            yield from _unemitted(site, root, _emitters(site, root))
+            yield from _unemitted(site, root, site, _emitters(site, root))
             yield from _emitted_elsewhere(site, root)
         return
     for scenario in scenarios(site):
         template = scenario.template
         if template is not None and isinstance(template.tree, tree.Template):
-            yield from _unemitted(site, scenario.variant, _emitters(template, template.tree))
+            yield from _unemitted(site, scenario.variant, template, _emitters(template, template.tree))
 
 
 def _emitters(site: Site, template: tree.Template) -> _Emitters:
@@ -115,7 +116,7 @@ def _keys_of(site: Site, node: tree.When | tree.During | None) -> Iterator[Key]:
                 yield _key(found)
 
 
-def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Diagnostic]:
+def _unemitted(site: Site, node: tree.Node, template: Site, emitters: _Emitters) -> Iterator[Diagnostic]:
     for ref in _events(node):
         event = site.target(ref)
         if event is None or emitters.emits(event):
@@ -129,8 +130,23 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
                 f"state which one it is by 'emits {moment} as <{ref.path}>'"
             )
         near = get_close_matches(ref.path, names, n=MAX_OFFERED, cutoff=0.0)
-        fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
-        yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)
+        fixes = [change(site, f"Change to '{name}'", ref, name) for name in near]
+        # The file of another template may not know the event.
+        fixes += _emissions(template, ref.path, moment) if template.uri == site.uri else ()
+        yield finding(site, ref, Severity.WARNING, CODE, message, fixes=tuple(fixes))
+
+
+def _emissions(template: Site, event: str, moment: str | None) -> Iterator[Fix]:
+    """Yield fixes that add ``emits … as <event>`` to a behaviour, for one of its moments or for all of them."""
+    uses = (node for node in walk(template.tree) if isinstance(node, tree.BehaviourUse))
+    for use in (use for use in uses if use.name.span.start < use.name.span.end):
+        emitted = {emission.moment.text for emission in use.emissions}
+        end = template.span((use.action, *use.emissions)[-1]).end
+        for one in load_catalog().behaviours[use.action.word].events:
+            if one not in emitted and moment in (None, one):
+                text = f"emits {one} as <{event}>"
+                title = f"Let '{use.name.text}' emit it: '{text}'"
+                yield Fix(title, (Edit(template.uri, Span(end, end), f" {text}"),))
 
 
 def not_emitted(event: str, bound: Iterable[str], inner: Iterable[str]) -> str:
