@@ -6,7 +6,7 @@ import pytest
 from rdflib import Literal, URIRef
 from rdflib.namespace import XSD
 
-from checks.models import found
+from checks.models import fixed, found
 from graph.statements import built
 from graph.test_text import assert_identity, there_and_back
 from kit import MODEL, SCENE, Fixture, fixture
@@ -161,3 +161,55 @@ scene inst (ns=s) models { scene: <bench_scene> }
 """
     graph = built(f"{execution}//- p.ttl\n{turtle}//- main.bdd\n{MODEL}//- lab.scene\n{SCENE}").graph
     assert read_model(graph).correct_places == {f"{ENV}bolt": (f"{ENV}tray_ws",)}
+
+
+def test_mass_and_friction_of_objects_are_settings_in_si_units() -> None:
+    stated = STATED.replace("colour: red  fragile", "colour: red  friction: 0.3  fragile", 1)
+    several = stated.replace("count: 3  mass: 2.5e-3 kg", "count: 3  mass: 1 g, 2 g  friction: low")
+    settings = read_model(built(f"//- lab.scene\n{stated}").graph).stated_settings
+    assert settings == {f"{ENV}bolt": {"mass": "0.02", "friction": "0.3"}} | {
+        f"{ENV}washer{number}": {"mass": "0.0025"} for number in range(3)
+    }
+    settings = read_model(built(f"//- lab.scene\n{several}").graph).stated_settings
+    assert set(settings) == {f"{ENV}bolt"}
+
+
+def test_an_imported_graph_states_a_mass_that_is_simulated() -> None:
+    turtle = f'@prefix env: <{ENV}> .\nenv:bolt env:mass "0.5 kg"^^<{QUANTITY}> .\n'
+    graph = built(f'//- main.bdd\n{MODEL}//- lab.scene\nimport "p.ttl"\n{SCENE}//- p.ttl\n{turtle}').graph
+    assert read_model(graph).stated_settings == {f"{ENV}bolt": {"mass": "0.5"}}
+
+
+@pytest.mark.parametrize(
+    ("properties", "words"),
+    [
+        ("mass: 0 kg", "no scene with this object can be set up: 'mass' cannot be '0': it must be a number from 0.001"),
+        ("mass: 80 kg", "'mass' cannot be '80'"),
+        ("friction: 50", "'friction' cannot be '50': it must be a number from 0.01 to 2"),
+        ("mass: 20", "a mass without a unit is not simulated: write its unit, as in '20 g'"),
+    ],
+)
+def test_a_mass_or_friction_that_no_simulation_has_is_reported(properties: str, words: str) -> None:
+    text = SCENE.replace("object bolt", f"object bolt {{ {properties} }}")
+    (finding,) = found(f"//- lab.scene\n{text}", "property-value")
+    assert words in finding.message
+    assert text[finding.span.start : finding.span.end] == properties
+
+
+def test_the_unit_of_a_mass_is_added_by_a_fix() -> None:
+    text = f"//- lab.scene\n{SCENE}".replace("count: 3", "count: 3 mass: 20")
+    assert "mass: 20 kg }" in fixed(text, "property-value", "Add 'kg'")
+
+
+@pytest.mark.parametrize(
+    "properties", ["mass: 20 g", "friction: 0.4", "friction: low", "mass: heavy", "mass: 1 g, 0 g"]
+)
+def test_other_masses_and_frictions_are_not_reported(properties: str) -> None:
+    assert (
+        found(f"//- lab.scene\n{SCENE}".replace("object bolt", f"object bolt {{ {properties} }}"), "property-value")
+        == []
+    )
+
+
+def test_the_mass_of_an_agent_only_describes() -> None:
+    assert found(f"//- lab.scene\n{SCENE}".replace("agent panda", "agent panda { mass: 0 kg }"), "property-value") == []

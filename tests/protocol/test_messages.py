@@ -1,6 +1,7 @@
 """Messages and manifests survive the way to the other process."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ from robbdd_tools.protocol.messages import (
     decode,
     encode,
 )
-from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
+from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, Manifest, ScenarioSpec, SceneSpec
 
 MESSAGES = [
     RunStarted(3, "mujoco"),
@@ -95,6 +96,7 @@ def test_half_characters_survive() -> None:
 
 def test_a_manifest_comes_back_equal(tmp_path: Path) -> None:
     scene = SceneSpec(("e:a",), ("e:r",), {"e:w": ("e:t",)}, {"e:w": ("e:v",)}, {"e:a": "e:w"})
+    scene = replace(scene, stated=(ConfigSpec("e:a", "mass", "0.2"),))
     clause = ClauseSpec(9, "https://x/c", "c", "then", '"e:a" is located at "e:w" after event "e:e"')
     values = {"e:var-x": "e:a", "e:var-n": 0.5, "e:var-s": ["e:a", "e:b"]}
     scenario = ScenarioSpec(

@@ -180,3 +180,24 @@ def test_what_cannot_be_set_up_is_explained(wanted: list[tuple[str, str, str]], 
     with pytest.raises(SceneError) as error:
         execution([pick_place()], configured(*wanted))
     assert message in str(error.value)
+
+
+def test_a_stated_mass_is_that_of_a_model_of_the_catalog() -> None:
+    run = started(replace(SCENE, stated=(ConfigSpec(CUBE, "mass", "0.2"), ConfigSpec(BALL, "friction", "0.3"))))
+    assert verdict(run, CUBE, "mass", "0.2") is Outcome.HOLDS
+    assert verdict(run, BALL, "friction", "0.3") is Outcome.HOLDS
+
+
+def test_a_given_clause_replaces_a_stated_mass() -> None:
+    run = started(replace(configured((CUBE, "mass", "0.1")), stated=(ConfigSpec(CUBE, "mass", "0.2"),)))
+    assert verdict(run, CUBE, "mass", "0.1") is Outcome.HOLDS
+
+
+def test_a_stated_mass_outside_the_limits_is_refused() -> None:
+    with pytest.raises(SceneError, match="'mass' cannot be '0'"):
+        started(replace(SCENE, stated=(ConfigSpec(CUBE, "mass", "0"),)))
+
+
+def test_the_stated_mass_of_a_fixed_object_only_describes() -> None:
+    run = started(replace(SCENE, stated=(ConfigSpec("env:bench", "mass", "60"),)))
+    assert ("env:bench", "mass") not in run.trace.settings

@@ -1,4 +1,7 @@
-"""``property-value``: a property is stated twice, has values of several kinds, or has the name of an element."""
+"""``property-value``: a property is stated twice, has values of several kinds, or has the name of an element.
+
+Also a mass or friction of an object that no simulation can have.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,13 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.property_values import NUMBER
 from robbdd_tools.base.removals import removal
+from robbdd_tools.catalog.settings import SettingError, setting_of
 from robbdd_tools.checks.finding import article, finding, related_to, written_text
 from robbdd_tools.graph.property_facts import Fact, declared_facts
 from robbdd_tools.graph.rdf.property_terms import property_name
+from robbdd_tools.graph.read.stated_settings import stated_setting
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -36,7 +42,10 @@ def property_value(site: Site) -> Iterator[Diagnostic]:
             if one.name.text in names:
                 message = f"'{one.name.text}' is an element of this set, so it cannot be a property: rename one of them"
                 yield finding(site, one.name, Severity.ERROR, CODE, message)
-    yield from _of_known_facts(site, list(declared_facts(site.file, site.placed)))
+    known = list(declared_facts(site.file, site.placed))
+    yield from _of_known_facts(site, known)
+    if root.kind == "object":
+        yield from _unsettable(site, known)
 
 
 def _repeated(site: Site, properties: tuple[tree.Property, ...]) -> Iterator[Diagnostic]:
@@ -62,6 +71,27 @@ def _repeated(site: Site, properties: tuple[tree.Property, ...]) -> Iterator[Dia
             (related_to(site, before, "the first values"),),
             (Fix("Add the values to the first list", edits),),
         )
+
+
+def _unsettable(site: Site, known: list[Fact]) -> Iterator[Diagnostic]:
+    """Report a mass or friction that a simulated object cannot have. One without a unit describes only."""
+    measures = {fact.value.measures for fact in known if fact.name == "mass"}
+    # The members of a similar set share what is written.
+    single = {id(fact.written): fact for fact in known if fact.written is not None and len(fact.written.values) == 1}
+    for fact in single.values():
+        assert fact.written is not None
+        setting = stated_setting(fact.name, fact.value)
+        if setting is not None:
+            try:
+                setting_of(fact.name).read(setting)
+            except SettingError as error:
+                message = f"no scene with this object can be set up: {error}"
+                yield finding(site, fact.written, Severity.WARNING, CODE, message)
+        elif fact.name == "mass" and measures == {NUMBER}:
+            message = "a mass without a unit is not simulated: write its unit, as in '20 g'"
+            end = site.span(fact.written).end
+            fixes = tuple(Fix(f"Add '{unit}'", (Edit(site.uri, Span(end, end), f" {unit}"),)) for unit in ("g", "kg"))
+            yield finding(site, fact.written, Severity.INFORMATION, CODE, message, fixes=fixes)
 
 
 def _of_known_facts(site: Site, found: list[Fact]) -> Iterator[Diagnostic]:

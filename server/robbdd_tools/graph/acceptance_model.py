@@ -328,6 +328,7 @@ class AcceptanceModel:
     - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
     - ``verifies``: the requirements that a story, a variant, a template or a clause verifies.
     - ``implementations``: all implementations of behaviours, also those that no execution uses.
+    - ``stated_settings``: maps an object to the configurations that its properties state, such as its mass (kg).
     """
 
     stories: tuple[Story, ...]
@@ -339,6 +340,7 @@ class AcceptanceModel:
     correct_places: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
     verifies: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
     implementations: tuple[Implementation, ...] = ()
+    stated_settings: Mapping[Iri, Mapping[str, str]] = field(default_factory=dict[Iri, Mapping[str, str]])
 
     def curie(self, iri: str) -> str:
         """Return an IRI as a CURIE of the longest matching namespace. If none matches, return the IRI itself."""

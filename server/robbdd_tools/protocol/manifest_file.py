@@ -97,6 +97,7 @@ def read_scenario(
             tuple(scene.get("unused", ())),
             {name: tuple(sets) for name, sets in scene.get("sets", {}).items()},
             {name: tuple(places) for name, places in scene.get("correct_places", {}).items()},
+            tuple(ConfigSpec(**config) for config in scene.get("stated", ())),
         ),
         clauses=tuple(map(_clause, clauses)),
         execution=None if execution is None else executions[execution],

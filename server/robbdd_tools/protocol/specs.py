@@ -35,6 +35,8 @@ class SceneSpec:
     - ``unused``: the objects and agents that no clause mentions.
     - ``correct_places``: maps an object to the workspaces that the model states to be correct for it.
     - ``sets``: maps elements to the local names of their sets, where models are chosen by name.
+    - ``stated``: the configurations that properties of objects state. They hold for models of the catalog only, and
+      ``config`` replaces them.
     """
 
     objects: tuple[str, ...] = ()
@@ -46,6 +48,7 @@ class SceneSpec:
     unused: tuple[str, ...] = ()
     sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    stated: tuple[ConfigSpec, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -93,6 +93,10 @@ class SpecWriter:
         self._correct_places = {
             self._curie(thing): tuple(map(self._curie, places)) for thing, places in model.correct_places.items()
         }
+        self._stated = {
+            self._curie(thing): tuple(ConfigSpec(self._curie(thing), name, value) for name, value in settings.items())
+            for thing, settings in model.stated_settings.items()
+        }
         self.execution = None if execution is None else self._execution(execution)
 
     def _execution(self, execution: Execution) -> ExecutionSpec:
@@ -236,6 +240,7 @@ class SpecWriter:
             tuple(name for name in (*objects, *agents) if name not in used),
             {name: sets for name in (*objects, *agents) if (sets := self._sets.get(name))},
             {name: correct for name in objects if (correct := self._correct_places.get(name))},
+            tuple(one for name in objects for one in self._stated.get(name, ())),
         )
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import RobotModel
-from robbdd_tools.catalog.object_settings import can_move
+from robbdd_tools.catalog.object_settings import can_move, object_has
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, Region
     from robbdd_tools.catalog.executable import Origin
     from robbdd_tools.catalog.settings import Numbers
-    from robbdd_tools.protocol.specs import SceneSpec
+    from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
     from robbdd_tools.world.pose import Pose
     from robbdd_tools.world.staging import Staging
 
@@ -143,9 +143,10 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     objects |= {name: carrying(objects[name]) for name in _bare_carriers(scene, objects)}
     if all(can_move(model) or model.bystander for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
+    stated = tuple(_stated(scene, objects))
     heights = {name: height_of(model) for name, model in objects.items()}
     found = Configured(objects, agents, openings)
-    configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
+    configure(found, ((config, _elements(scene, config.target)) for config in (*scene.config, *stated)))
     objects |= {name: centred(model) for name, model in objects.items()}
     regions = _regions(scene, objects)
     return Cast(
@@ -162,6 +163,16 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         heights,
         openings,
     )
+
+
+def _stated(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[ConfigSpec]:
+    """Yield what properties state about objects with a model of the catalog, and what no Given clause sets."""
+    own = {(name, config.name) for config in scene.config for name in _elements(scene, config.target)}
+    catalog = load_catalog().objects
+    for one in scene.stated:
+        model = None if (one.target, one.name) in own else objects.get(one.target)
+        if model is not None and model is catalog.get(model.name) and object_has(model, one.name):
+            yield one
 
 
 def _agent_model(scene: SceneSpec, staging: Staging | None, name: str) -> RobotModel | ObjectModel | None:

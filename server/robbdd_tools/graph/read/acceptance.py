@@ -24,6 +24,7 @@ from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_
 from robbdd_tools.graph.read.executions import read_executions, read_implementations
 from robbdd_tools.graph.read.instances import InstanceReader, Places
 from robbdd_tools.graph.read.scene_columns import read_columns
+from robbdd_tools.graph.read.stated_settings import read_stated_settings
 from robbdd_tools.graph.read.variations import VariationReader
 
 if TYPE_CHECKING:
@@ -53,7 +54,9 @@ def read_model(graph: Graph, places: Places = _nowhere, records: Records | None 
     correct = _correct_places(records, sets)
     verifies = {node: records.iris(records.all(node, VERIFIES)) for node in records.subjects(VERIFIES)}
     known = read_implementations(records, places)
-    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees, correct, verifies, known)
+    stated = read_stated_settings(records, (node for node, kind in kinds.items() if kind == "object"))
+    prefixes = reading_prefixes(graph)
+    return AcceptanceModel(every, kinds, sets, prefixes, executions, trees, correct, verifies, known, stated)
 
 
 def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> dict[Iri, tuple[Iri, ...]]:

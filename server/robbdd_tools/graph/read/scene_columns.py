@@ -18,7 +18,7 @@ def read_columns(records: Records, variant: Iri, members: Iterable[Iri]) -> Iter
         for scene in records.iris(records.all(variant, "rbw:scene"))
         for column in map(str, items_of(records, scene, "rbw:table-columns"))
     ]
-    known = {member: _properties(records, member) for member in members} if columns else {}
+    known = {member: properties_of(records, member) for member in members} if columns else {}
     for column in columns:
         name = records.text(column, "rbw:property-name")
         sets = records.iris(records.all(column, "rbw:of-set"))
@@ -27,7 +27,7 @@ def read_columns(records: Records, variant: Iri, members: Iterable[Iri]) -> Iter
             yield Column(name, elements, {member: found[name] for member, found in known.items() if name in found})
 
 
-def _properties(records: Records, element: Iri) -> dict[str, tuple[PropertyValue, ...]]:
+def properties_of(records: Records, element: Iri) -> dict[str, tuple[PropertyValue, ...]]:
     """Return the values of an element's properties by their names."""
     found: dict[str, dict[PropertyValue, None]] = {}
     for term in records.properties(element):
