@@ -7,7 +7,7 @@ RADIUS = 0.030
 
 BALL = ObjectModel(
     name="ball",
-    prefixes=("ball",),
+    prefixes=("ball", "sphere", "apple"),
     shapes=(Shape(ShapeKind.SPHERE, (RADIUS, 0.0, 0.0)),),
     mass=0.060,
     friction=0.6,

@@ -23,7 +23,7 @@ def _shapes() -> tuple[Shape, ...]:
 
 BIN = ObjectModel(
     name="bin",
-    prefixes=("bin", "container", "crate", "tote", "basket"),
+    prefixes=("bin", "container", "crate", "tote", "basket", "bucket"),
     shapes=_shapes(),
     mass=0.60,
     friction=0.5,

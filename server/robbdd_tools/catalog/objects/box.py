@@ -7,7 +7,7 @@ HALF = (0.030, 0.022, 0.020)
 
 BOX = ObjectModel(
     name="box",
-    prefixes=("box", "carton"),
+    prefixes=("box", "carton", "block", "brick", "package", "packet", "parcel"),
     shapes=(Shape(ShapeKind.BOX, HALF),),
     mass=0.080,
     friction=0.5,

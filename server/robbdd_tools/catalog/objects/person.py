@@ -27,7 +27,7 @@ def _shapes() -> tuple[Shape, ...]:
 
 PERSON = ObjectModel(
     name="person",
-    prefixes=("person", "people", "human", "operator", "worker"),
+    prefixes=("person", "people", "human", "operator", "worker", "technician", "nurse", "visitor"),
     shapes=_shapes(),
     mass=75.0,
     friction=0.5,

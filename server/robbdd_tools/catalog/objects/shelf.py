@@ -29,7 +29,7 @@ def _above(name: str, x: float, height: float) -> Region:
 
 SHELF = ObjectModel(
     name="shelf",
-    prefixes=("shelf", "rack"),
+    prefixes=("shelf", "rack", "cupboard"),
     shapes=_shapes(),
     mass=4.0,
     friction=0.6,

@@ -23,7 +23,7 @@ def _shapes() -> tuple[Shape, ...]:
 
 TABLE = ObjectModel(
     name="table",
-    prefixes=("table", "bench", "dining"),
+    prefixes=("table", "bench", "desk", "worktop", "dining"),
     shapes=_shapes(),
     mass=30.0,
     friction=0.6,
