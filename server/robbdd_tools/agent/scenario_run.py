@@ -88,7 +88,10 @@ class ScenarioRun:
         self._known = {clause.line: clause for clause in spec.clauses}
         self._wording = wording
         named = named_predicates(clause.statement for clause in spec.clauses)
-        steps = {line: stated_by_step(role, text, self._known.get(line), wording, named) for line, role, text in texts}
+        steps = {
+            line: stated_by_step(role, text, self._known.get(line), wording, named, spec.scene)
+            for line, role, text in texts
+        }
         self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
         self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}
         self._texts = {line for line, _, text in texts if is_free_text(steps[line], text)}

@@ -203,6 +203,8 @@ class Predicate:
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
     - ``synonyms``: wrong words that users write for it; the error message then names the predicate.
+    - ``in_texts``: other forms with the same slots that only the text of a ``pred("…")`` may have, because as a phrase
+      they belong to a predicate about other kinds of elements.
     """
 
     name: str
@@ -220,6 +222,7 @@ class Predicate:
     duration: DurationMargin | None = None
     measured: Literal["nothing", "length", "angle", "speed", "otherwise"] = "otherwise"
     synonyms: tuple[str, ...] = ()
+    in_texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,8 @@ from robbdd_tools.catalog.registry import load_catalog
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Predicate
 
+    Said = tuple[Predicate, Mapping[str, str]]
+
 _KINDS = {
     Kind.OBJECT: "object",
     Kind.OBJECT_SET: "object",
@@ -24,19 +26,29 @@ _PLACEHOLDER = re.compile(r'"?\{(\w[\w-]*)\}"?')
 _SLOT = re.compile(r"<([\w-]+)>|#([\w-]+)")
 
 
-def predicate_in_text(template: str, names: Collection[str]) -> tuple[Predicate, Mapping[str, str]] | None:
-    """Return the predicate whose phrase has the words of a text, and the text's placeholder for each of its slots.
+def predicates_in_text(template: str, names: Collection[str]) -> tuple[Said, ...]:
+    """Return the predicates whose phrase has the words of a text, each with the text's placeholders for its slots.
 
     ``{a} is correct for {b}`` matches ``<workspace> is correct for <object>``. Quotes around placeholders and the width
     of blanks do not matter. Not recognized are phrases that set something up or have names or values without a unit,
-    and texts with a placeholder that is not among ``names``.
+    and texts with a placeholder that is not among ``names``. If the words are those of several predicates, the kinds of
+    the values decide; the predicate whose phrase it is in a clause is the first.
     """
     words = " ".join(_PLACEHOLDER.sub("{}", template).split())
-    found = _phrases().get(words)
     placeholders = _PLACEHOLDER.findall(template)
-    if found is None or not set(names) >= set(placeholders):
-        return None
-    return found[0], dict(zip(found[1], placeholders, strict=True))
+    if not set(names) >= set(placeholders):
+        return ()
+    found = _phrases().get(words, ())
+    return tuple((predicate, dict(zip(slots, placeholders, strict=True))) for predicate, slots in found)
+
+
+def predicates_in_sentence(predicate: Predicate) -> tuple[Said, ...]:
+    """Return the predicates that have the words of a predicate's phrase, each with this predicate's slots for its own.
+
+    The first is the predicate itself, unless its phrase cannot be written as a text.
+    """
+    slots = [slot.name for slot in predicate.slots]
+    return predicates_in_text(_SLOT.sub(lambda match: f"{{{match[1] or match[2]}}}", predicate.phrase), slots)
 
 
 def phrase_with(predicate: Predicate, values: Mapping[str, str]) -> str:
@@ -50,12 +62,17 @@ def accepts(kind: Kind, element: str) -> bool:
 
 
 @cache
-def _phrases() -> Mapping[str, tuple[Predicate, tuple[str, ...]]]:
-    """Map each phrase, with ``{}`` for its slots, to its predicate and the names of the slots in written order."""
-    found: dict[str, tuple[Predicate, tuple[str, ...]]] = {}
-    for predicate in load_catalog().predicates.values():
-        if not {slot.kind for slot in predicate.slots} & {Kind.NAME, Kind.VALUE} and predicate.duration is None:
-            for phrase in (predicate.phrase, *predicate.aliases):
-                slots = tuple(one or other for one, other in _SLOT.findall(phrase))
-                found[" ".join(_SLOT.sub("{}", phrase).split())] = (predicate, slots)
-    return found
+def _phrases() -> Mapping[str, tuple[tuple[Predicate, tuple[str, ...]], ...]]:
+    """Map each phrase, with ``{}`` for its slots, to its predicates and the names of their slots in written order."""
+    found: dict[str, list[tuple[Predicate, tuple[str, ...]]]] = {}
+    sayable = [
+        predicate
+        for predicate in load_catalog().predicates.values()
+        if not {slot.kind for slot in predicate.slots} & {Kind.NAME, Kind.VALUE} and predicate.duration is None
+    ]
+    own = ((predicate, phrase) for predicate in sayable for phrase in (predicate.phrase, *predicate.aliases))
+    others = ((predicate, phrase) for predicate in sayable for phrase in predicate.in_texts)
+    for predicate, phrase in (*own, *others):
+        slots = tuple(one or other for one, other in _SLOT.findall(phrase))
+        found.setdefault(" ".join(_SLOT.sub("{}", phrase).split()), []).append((predicate, slots))
+    return {words: tuple(predicates) for words, predicates in found.items()}

@@ -10,7 +10,7 @@ from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.step_files import may_define
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.event_names import inner_event
-from robbdd_tools.catalog.phrases_in_text import predicate_in_text
+from robbdd_tools.catalog.phrases_in_text import predicates_in_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS, SettingError, setting_of
 from robbdd_tools.checks.graph_site import members, values_of
@@ -64,7 +64,7 @@ def _unjudged(site: GraphSite, clauses: tuple[Clause, ...]) -> Iterator[Diagnost
     for clause in clauses:
         if not isinstance(clause, TextFluent | TextClause) or clause.iri in by_policy:
             continue
-        if isinstance(clause, TextFluent) and predicate_in_text(clause.template, clause.arguments):
+        if isinstance(clause, TextFluent) and predicates_in_text(clause.template, clause.arguments):
             continue
         text = clause.template if isinstance(clause, TextFluent) else clause.text
         conditions = clause.conditions if isinstance(clause, TextFluent) else ()

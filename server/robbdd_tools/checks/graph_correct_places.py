@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.catalog.phrases_in_text import predicate_in_text
+from robbdd_tools.catalog.phrases_in_text import predicates_in_text
 from robbdd_tools.checks.graph_site import members, values_of
 from robbdd_tools.checks.no_correct_place import CODE, WORDS, no_place
 from robbdd_tools.graph.acceptance_model import Exists, Fluent, ForAll, Iri, TextFluent, every_clause
@@ -36,10 +36,10 @@ def _asked(variant: Variant) -> frozenset[str]:
     sets = {clause.variable: clause.in_set for clause in clauses if isinstance(clause, ForAll | Exists)}
     asked: set[str] = set()
     for clause in clauses:
-        said = predicate_in_text(clause.template, clause.arguments) if isinstance(clause, TextFluent) else None
-        if isinstance(clause, TextFluent) and said is not None and said[0].name in WORDS:
-            placeholders = (said[1].get(slot, "") for slot in ("object", "objects"))
-            asked.update(str(clause.arguments[name]) for name in placeholders if name in clause.arguments)
+        if isinstance(clause, TextFluent):
+            for predicate, named in predicates_in_text(clause.template, clause.arguments):
+                placeholders = (named.get(slot, "") for slot in ("object", "objects") if predicate.name in WORDS)
+                asked.update(str(clause.arguments[name]) for name in placeholders if name in clause.arguments)
         used: list[Fluent | Condition] = [clause] if isinstance(clause, Fluent) else []
         if isinstance(clause, Fluent | TextFluent):
             used += clause.conditions

@@ -11,8 +11,9 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.step_files import may_define
-from robbdd_tools.catalog.phrases_in_text import phrase_with, predicate_in_text
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.said_texts import said_phrases
+from robbdd_tools.names.elements import Site
 from robbdd_tools.names.index import language_of
 from robbdd_tools.protocol.time_words import instant_words, interval_words
 from robbdd_tools.syntax import tree
@@ -21,7 +22,6 @@ from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
@@ -43,7 +43,7 @@ class Unjudged:
 def no_evaluator(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each such clause at its text."""
     for found in unjudged(snapshot, file):
-        if said_by(found.clause) is not None:
+        if said_phrases(Site(snapshot, file, found.placed), found.clause):
             continue
         message = needs_evaluator(may_have_policy=isinstance(found.clause, tree.Fluent))
         yield Diagnostic(file.document.uri, found.span, Severity.WARNING, CODE, message)
@@ -72,26 +72,6 @@ def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
         if not any(may_define(model, sentence) for model in models):
             found.append(Unjudged(placed, clause, text_of(clause).span.shifted(placed.offset)))
     return found
-
-
-def said_by(clause: FreeClause) -> tuple[Predicate, str] | None:
-    """Return the catalog predicate whose phrase is the text of a clause, and the phrase with the clause's values."""
-    if not isinstance(clause, tree.Fluent) or not isinstance(clause.predicate, tree.TextPredicate):
-        return None
-    values: dict[str, str] = {}
-    for one in clause.predicate.arguments:
-        match one.value:
-            case tree.Ref(path=path):
-                values[one.name.text] = f"<{path}>"
-            case tree.Quantity(text=text):
-                values[one.name.text] = text
-            case _:
-                pass  # No phrase that may be written as a text has a slot for a plain number or a string.
-    found = predicate_in_text(clause.predicate.template.value, values)
-    if found is None:
-        return None
-    predicate, placeholders = found
-    return predicate, phrase_with(predicate, {slot: values[name] for slot, name in placeholders.items()})
 
 
 def text_of(clause: FreeClause) -> tree.Text:

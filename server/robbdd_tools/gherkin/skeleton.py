@@ -12,7 +12,7 @@ from pathlib import Path
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.step_files import defined_steps
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.catalog.phrases_in_text import predicate_in_text
+from robbdd_tools.catalog.phrases_in_text import predicates_in_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.background_tables import scene_tables
@@ -126,7 +126,7 @@ def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Patt
                 yield from _all(clause.operands, free_only=free_only)
             case Junction() | EventClause() | BehaviourClause() | Fluent() if free_only:
                 pass
-            case TextFluent() if free_only and predicate_in_text(clause.template, clause.arguments):
+            case TextFluent() if free_only and predicates_in_text(clause.template, clause.arguments):
                 pass
             case Junction(operator="not"):
                 yield Pattern(clause.role, "not ( {clause} )", (("clause", "str"),))

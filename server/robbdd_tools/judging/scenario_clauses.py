@@ -9,16 +9,20 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.coordination import each_emitter
 from robbdd_tools.judging.parsed_sentences import fluent_pattern, read_step
+from robbdd_tools.judging.phrases_by_kind import with_fitting_predicates
 from robbdd_tools.judging.policies import with_policies
 from robbdd_tools.monitor.compound import definition_of
 from robbdd_tools.monitor.time import in_iterations
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text, leaves_of
+from robbdd_tools.protocol.specs import SceneSpec
 from robbdd_tools.protocol.time_words import FIRST_WORDING, WORDING
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.protocol.clauses import Clause, Statement
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+
+NO_SCENE = SceneSpec()
 
 
 def statement_of(known: ClauseSpec) -> Statement | None:
@@ -30,16 +34,23 @@ def statement_of(known: ClauseSpec) -> Statement | None:
 
 
 def stated_by_step(
-    role: str, text: str, known: ClauseSpec | None, wording: int = WORDING, named: Sequence[Predicate] = ()
+    role: str,
+    text: str,
+    known: ClauseSpec | None,
+    wording: int = WORDING,
+    named: Sequence[Predicate] = (),
+    scene: SceneSpec = NO_SCENE,
 ) -> Statement | None:
     """Return the statement of a step.
 
     This is the statement of ``known``, the clause of the step's line. If the sentence was edited, the sentence is
-    parsed by the version ``wording`` of the feature, with the predicates ``named`` that the model defines.
+    parsed by the version ``wording`` of the feature, with the predicates ``named`` that the model defines. The elements
+    of ``scene`` decide between predicates with the same words.
     """
-    if known is None:
-        return read_step(role, text, wording, named)
-    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text, wording, named), known)
+    if known is not None and known.sentence == text:
+        return statement_of(known)
+    read = with_fitting_predicates(read_step(role, text, wording, named), scene)
+    return read if known is None else _with_iris(read, known)
 
 
 def is_free_text(statement: Statement | None, text: str) -> bool:

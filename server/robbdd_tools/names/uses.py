@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.api import Kind
-from robbdd_tools.catalog.phrases_in_text import predicate_in_text
+from robbdd_tools.catalog.phrases_in_text import predicates_in_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax import tree
 
@@ -152,8 +152,8 @@ class _Collector:
     def _phrase(self, node: tree.PhraseUse | tree.TextPredicate | tree.NamedUse, bound: Mapping[str, Bound]) -> None:
         if isinstance(node, tree.TextPredicate):
             refs = [(one.value, ANYTHING) for one in node.arguments if isinstance(one.value, tree.Ref)]
-            said = predicate_in_text(node.template.value, [one.name.text for one in node.arguments])
-            phrase = "pred(…)" if said is None else said[0].phrase
+            said = predicates_in_text(node.template.value, [one.name.text for one in node.arguments])
+            phrase = said[0][0].phrase if said else "pred(…)"
         elif isinstance(node, tree.NamedUse):
             # The kinds of its parameters depend on another declaration.
             refs = [(value, ANYTHING) for value in node.values if isinstance(value, tree.Ref)]

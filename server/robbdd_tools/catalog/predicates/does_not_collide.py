@@ -62,6 +62,7 @@ DOES_NOT_COLLIDE = Predicate(
     name="does-not-collide",
     phrase="<agent> does not collide <target>",
     rdf_type="bdd:DoesNotCollidePredicate",
+    in_texts=("<agent> does not collide with <target>",),
     synonyms=("collide", "collides", "collision", "hit", "hits", "bump", "bumps", "crash", "crashes"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),

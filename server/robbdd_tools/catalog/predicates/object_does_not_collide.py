@@ -71,6 +71,7 @@ def _pushed(evidence: Evidence, carrier: str, force: FloatArray) -> FloatArray:
 OBJECT_DOES_NOT_COLLIDE = Predicate(
     name="object-does-not-collide",
     phrase="<one> does not collide with <other>",
+    in_texts=("<one> does not collide <other>",),
     rdf_type="rbw:ObjectDoesNotCollidePredicate",
     slots=(
         Slot("one", Kind.OBJECT, "bdd:ref-object"),
