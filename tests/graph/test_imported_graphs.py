@@ -253,3 +253,56 @@ def test_places_of_statements_in_turtle() -> None:
         ("c", "p"): "<https://e.org/p>",
         ("c", "p", "a"): "e:a",
     }
+
+
+RELATED = """@prefix env: <https://example.org/env/> .
+@prefix rbw: <https://robbdd.org/metamodels/workbench#> .
+env:tray_ws rbw:correct-for env:bolt , env:washers , env:washer1 .
+env:panda <https://example.org/properties#beside> env:tray .
+<https://example.org/t/fetch> <https://example.org/properties#owner> "me" .
+<https://example.org/t/bench-to-tray> <https://example.org/properties#owner> "me" .
+"""
+
+
+def collecting(text: str = RELATED) -> Project:
+    """Return a project whose main file only imports a model and a graph about elements in the model's scene."""
+    loaded = Project()
+    files = {"lab.scene": SCENE, "model.bdd": MODEL, "extra.ttl": text}
+    for name, content in {**files, "main.bdd": 'import "model.bdd"\nimport "extra.ttl"\n'}.items():
+        loaded.open(FOLDER + name, 0, content)
+    return loaded
+
+
+def test_a_file_that_only_imports_a_model_and_a_graph_has_no_findings_on_correct_statements() -> None:
+    snapshot = collecting().snapshot()
+    assert [one for one in all_diagnostics(snapshot, MAIN) if one.severity is Severity.ERROR] == []
+    assert validate(build_graph(snapshot, MAIN)) == [] == Validation().run(snapshot, MAIN)
+
+
+def test_only_the_described_elements_are_added_to_such_a_file() -> None:
+    graph = build_graph(collecting().snapshot(), MAIN).graph
+    kinds = {
+        str(kind).rpartition("#")[2]: {str(node).rpartition("/")[2] for node in graph.subjects(RDF.type, kind)}
+        for kind in set(graph.objects(None, RDF.type))
+    }
+    assert kinds.pop("Set") == kinds.pop("ConstantSet") == {"parts", "furniture", "places", "arms", "washers"}
+    assert kinds == {
+        "Object": {"bolt", "nut", "bench", "tray", "washer0", "washer1", "washer2"},
+        "Workspace": {"bench_ws", "tray_ws"},
+        "Agent": {"panda", "ur10"},
+    }
+
+
+def test_wrong_statements_are_still_found_there() -> None:
+    snapshot = collecting(RELATED.replace("env:bolt", "env:panda")).snapshot()
+    (one,) = [one for one in all_diagnostics(snapshot, MAIN) if one.severity is Severity.ERROR]
+    assert one.message.startswith("'arms.panda' is not an object")
+
+
+@pytest.mark.parametrize("edited", ["places { ", "parts { ", "arms { "])
+def test_after_an_edit_the_links_of_imported_graphs_lead_to_unchanged_declarations(edited: str) -> None:
+    loaded, validation = project(RELATED), Validation()
+    assert validation.run(loaded.snapshot(), MAIN) == []
+    loaded.open(LAB, 1, f'import "extra.ttl"\n{SCENE.replace(edited, edited + " ")}')
+    assert validation.run(loaded.snapshot(), MAIN) == []
+    assert 0 < validation.looked_at < 20

@@ -14,10 +14,12 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
 from robbdd_tools.features.run_verdicts import Digests
 from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.graph.rdf.serialize import parse, serialize
 from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.run_options import BadSetting, RunOptions, select
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.run.user_code import refusal
+from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.judged_scenarios import judged_scenario
 from robbdd_tools.workbench.model import ModelErrors
 from robbdd_tools.workbench.named_files import NotAModel
@@ -197,3 +199,41 @@ def test_results_state_the_instance_and_later_commands_keep_it(tidy: Path, capsy
     capsys.readouterr()
     assert main(["replay", "1"]) == 2
     assert "cell.scenex was changed since the run" in capsys.readouterr().err
+
+
+BOTH = ("env:blue_ws", "env:red_ws")
+GRAPH = """@prefix env: <https://example.org/robbdd/rightbin/environment/> .
+@prefix rbw: <https://robbdd.org/metamodels/workbench#> .
+env:red_ws rbw:correct-for env:cube_2 .
+"""
+CHOSEN = """import "station.scene"
+import "known{ending}"
+ns sim = 'https://example.org/sim/'
+scene inst (ns=sim) chosen {{ scene: <station> }}
+"""
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("ending", [".ttl", ".jsonld"])
+def test_the_graphs_that_a_named_scenex_imports_count_in_the_run(ending: str, tmp_path: Path) -> None:
+    folder = shutil.copytree(EXAMPLES / "rightbin", tmp_path / "bin")
+    text = GRAPH if ending == ".ttl" else serialize(parse(GRAPH, "ttl"), "json-ld")
+    (folder / f"known{ending}").write_text(text, encoding="utf-8")
+    (folder / "chosen.scenex").write_text(CHOSEN.format(ending=ending), encoding="utf-8")
+    model = robbdd.load(folder / "rightbin.bdd")
+    plain, chosen = model.scenarios("wrong-order"), model.scenarios("wrong-order", scenex=folder / "chosen.scenex")
+    for plan, places, verdict in ((plain, ("env:blue_ws",), "violated"), (chosen, BOTH, "holds")):
+        (spec,) = plan.scenarios
+        assert spec.scene.correct_places["env:cube_2"] == places
+        with plan.run(seed=1, keeping=Keeping(tmp_path / "runs" / verdict)) as run:
+            (result,) = run.results
+        assert {clause.name: clause.verdict for clause in result.clauses}["right-bin"] == verdict
+    stored = read_manifest(next((tmp_path / "runs" / "holds").rglob("manifest.json")).parent)
+    assert stored.scenarios == tuple(chosen.scenarios)
+
+
+def test_a_fault_in_such_a_graph_is_an_error_of_the_scenex(tmp_path: Path) -> None:
+    folder = shutil.copytree(EXAMPLES / "rightbin", tmp_path / "bin")
+    (folder / "known.ttl").write_text(GRAPH + "env:red_ws env: ; .", encoding="utf-8")
+    (folder / "chosen.scenex").write_text(CHOSEN.format(ending=".ttl"), encoding="utf-8")
+    assert "known.ttl:4:" in refused(folder / "rightbin.bdd", str(folder / "chosen.scenex"), ModelErrors)

@@ -6,7 +6,8 @@ never imports it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import PurePath
 
 
@@ -273,7 +274,8 @@ class SceneInstance:
     """An executable scene: models of the whole scene, models of its elements, and the placements of bodies.
 
     ``anchor`` is the frame that represents the world; empty if none is given. ``scene`` is the IRI of the scene that it
-    instantiates.
+    instantiates. ``correct_places`` maps objects to the workspaces that are correct for them (IRIs). It is only known
+    for an instance that is chosen for a run, whose file may import graphs that the model does not.
     """
 
     iri: str
@@ -286,3 +288,4 @@ class SceneInstance:
     origin: Origin | None = None
     scene: str = ""
     frictions: tuple[Friction, ...] = ()
+    correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])

@@ -52,6 +52,7 @@ class _Shared:
     named: tuple[Iri, ...]
     events: Mapping[str, str]
     instance: SceneInstance | None
+    correct_places: Mapping[str, tuple[str, ...]]
 
 
 class SpecWriter:
@@ -90,9 +91,7 @@ class SpecWriter:
             for element in elements:
                 known = self._sets.get(self._curie(str(element)), ())
                 self._sets[self._curie(str(element))] = (*known, self._curie(name).rpartition(":")[2])
-        self._correct_places = {
-            self._curie(thing): tuple(map(self._curie, places)) for thing, places in model.correct_places.items()
-        }
+        self._stated_places = self._named(model.correct_places)
         self._stated = {
             self._curie(thing): tuple(ConfigSpec(self._curie(thing), name, value) for name, value in settings.items())
             for thing, settings in model.stated_settings.items()
@@ -208,7 +207,17 @@ class SpecWriter:
             named_elements(self._model, variant),
             {self._curie(event): emits for event, emits in emitters_of(variant, self._relations.node(variant)).items()},
             None if variant.instance is None else self._instance(variant.instance),
+            self._correct_places(variant.instance),
         )
+
+    def _correct_places(self, instance: SceneInstance | None) -> dict[str, tuple[str, ...]]:
+        """Return the correct places that the model states, and those that a chosen scene instance adds."""
+        if instance is None:
+            return self._stated_places
+        found = {thing: set[str](places) for thing, places in self._model.correct_places.items()}
+        for thing, places in instance.correct_places.items():
+            found.setdefault(Iri(thing), set()).update(places)
+        return self._named({thing: tuple(map(Iri, sorted(places))) for thing, places in found.items()})
 
     def _named(self, mapping: Mapping[Iri, tuple[Iri, ...]]) -> dict[str, tuple[str, ...]]:
         return {self._curie(key): tuple(map(self._curie, entries)) for key, entries in mapping.items()}
@@ -239,7 +248,7 @@ class SpecWriter:
             tuple(config),
             tuple(name for name in (*objects, *agents) if name not in used),
             {name: sets for name in (*objects, *agents) if (sets := self._sets.get(name))},
-            {name: correct for name in objects if (correct := self._correct_places.get(name))},
+            {name: correct for name in objects if (correct := shared.correct_places.get(name))},
             tuple(one for name in objects for one in self._stated.get(name, ())),
         )
 

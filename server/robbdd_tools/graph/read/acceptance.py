@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.acceptance_model import (
@@ -73,11 +73,15 @@ def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> 
 def read_instances(
     graph: Graph, places: Places = _nowhere, records: Records | None = None
 ) -> tuple[SceneInstance, ...]:
-    """Return the scene instances of a graph in IRI order. ``records`` are the graph's records, if known."""
+    """Return the scene instances of a graph in IRI order, each with the correct places that the graph states.
+
+    ``records`` are the graph's records, if known.
+    """
     records = records or Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
-    reader = InstanceReader(records, sets, places)
-    return tuple(reader.instance(node) for node in sorted(records.instances("rbw:SceneInstance")))
+    reader, correct = InstanceReader(records, sets, places), _correct_places(records, sets)
+    instances = map(reader.instance, sorted(records.instances("rbw:SceneInstance")))
+    return tuple(replace(instance, correct_places=correct) for instance in instances)
 
 
 def incomplete_variants(records: Records) -> dict[Iri, str]:

@@ -73,7 +73,7 @@ class Validation:
         self.looked_at = 0
         self._import(imported_graph(snapshot, uri))
         local = self._local_files(project)
-        around = Neighbourhoods(snapshot, uri)
+        around = Neighbourhoods(snapshot, uri, self._imported)
         self._forget(around)
         waiting = [entry for entry in around.reached if around.identity(entry) not in self._kept]
         for start in range(0, len(waiting), AT_ONCE):

@@ -6,11 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reachable_declarations
+from robbdd_tools.graph.write.declarations import Key, Reached, Uses, declarers_of, reachable_declarations
 from robbdd_tools.graph.write.identities import identities
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
+    from robbdd_tools.graph.write.imported_graphs import ImportedGraph
     from robbdd_tools.names.anchors import Anchor
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
@@ -24,9 +25,9 @@ Fingerprint = tuple[object, ...]
 class Neighbourhoods:
     """The declarations in the graph of one revision of a file, with their dependencies and dependents."""
 
-    def __init__(self, snapshot: Snapshot, uri: str) -> None:
+    def __init__(self, snapshot: Snapshot, uri: str, imported: ImportedGraph) -> None:
         self.uses = Uses(snapshot.closure(uri))
-        self.reached = reachable_declarations(self.uses)
+        self.reached = reachable_declarations(self.uses, imported.nodes)
         self.known = identities(snapshot, self.reached)
         self._by_key = {entry.key: entry for entry in self.reached}
         self._identities = dict(self._identified())
@@ -35,6 +36,7 @@ class Neighbourhoods:
         self._seen_as: dict[Key, list[object]] = {}
         self._add_declarers()
         self._add_compositions()
+        self._add_imported(imported)
 
     def identity(self, entry: Reached) -> Identity:
         """Return a key that identifies a declaration in all revisions of the file."""
@@ -131,6 +133,15 @@ class Neighbourhoods:
                 iri = _iri(entry, link.reference)
                 if iri in describing:
                     self._partners.setdefault(entry.key, []).extend(describing[iri])
+
+    def _add_imported(self, imported: ImportedGraph) -> None:
+        """Record that a declaration depends on the declarations to which imported graphs link its nodes."""
+        declarers = declarers_of(self.reached, imported.nodes)
+        for subject, value in sorted(imported.links):
+            for entry in declarers.get(subject, ()):
+                others = [other for other in declarers.get(value, ()) if other.key != entry.key]
+                if others:
+                    self._partners.setdefault(entry.key, []).extend(others)
 
 
 def _iri(entry: Reached, ref: tree.Ref) -> str | None:

@@ -66,8 +66,8 @@ def build_graph(snapshot: Snapshot, uri: str, together: Collection[str] = ()) ->
     if file is not None:
         return read_graph_file(file.document, [snapshot.document(other) for other in snapshot.joined.get(uri, ())])
     uses = Uses(snapshot.closure(uri), together)
-    reached = reachable_declarations(uses)
     imported = imported_graph(snapshot, uri)
+    reached = reachable_declarations(uses, imported.nodes)
     built = build_declarations(uri, uses, reached, identities(snapshot, reached), imported)
     return replace(built, faults=tuple(imported_faults(snapshot, uri, imported, built.graph)))
 

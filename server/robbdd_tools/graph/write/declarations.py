@@ -6,10 +6,10 @@ entries of their own. So an error or an edit in one scenario does not concern th
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, groupby
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
@@ -149,13 +149,17 @@ def _entries(file: FileAnalysis, placed: PlacedDeclaration, own: bool) -> tuple[
     return tuple(Reached(file, part, own, (uri, part.offset), placed) for part in placed.parts[:-1])
 
 
-def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
+def reachable_declarations(uses: Uses, described: Collection[str] = ()) -> tuple[Reached, ...]:
     """Return all declarations of the first file and all declarations that are reachable from them.
 
-    Imported files are before the files that import them. If a part of a story is reachable, the whole story is.
+    Imported files are before the files that import them. If a part of a story is reachable, the whole story is. The
+    elements and sets among the nodes ``described`` by imported graphs are reachable, too: without their types, these
+    statements would be wrong. Stories and templates are not, because a file has the criteria of its own only.
     """
     every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
+    elements = [entry for entry in every if not entry.own and isinstance(entry.tree, tree.ElementSet | tree.SimilarSet)]
+    waiting += chain.from_iterable(declarers_of(elements, described).values())
     found = {entry.key for entry in waiting}
     while waiting:
         entry = waiting.pop()
@@ -164,6 +168,19 @@ def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
                 found.add(used.key)
                 waiting.append(used)
     return tuple(entry for entry in every if entry.key in found)
+
+
+def declarers_of(entries: Iterable[Reached], nodes: Collection[str]) -> dict[str, list[Reached]]:
+    """Map each of some nodes (IRIs) to those of the ``entries`` that declare it. Other nodes are left out."""
+    found: dict[str, list[Reached]] = {}
+    for _, several in groupby(entries if nodes else (), key=lambda entry: entry.uri):
+        inside = list(several)
+        starts = [entry.placed.offset for entry in inside]
+        for definition in inside[0].file.definitions.values():
+            iri, position = definition.iri, bisect_right(starts, definition.span.start) - 1
+            if iri is not None and iri in nodes and position >= 0 and inside[position].holds(definition):
+                found.setdefault(iri, []).append(inside[position])
+    return found
 
 
 def unreliable_declarations(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
@@ -46,7 +46,7 @@ class Statement:
     place: Location | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ImportedGraph:
     """All graphs that a file imports, directly or not.
 
@@ -69,6 +69,19 @@ class ImportedGraph:
     def subjects(self) -> frozenset[str]:
         """The nodes about which there are statements."""
         return frozenset(str(subject) for subject, _, _ in self.triples)
+
+    @cached_property
+    def links(self) -> frozenset[tuple[str, str]]:
+        """The pairs of nodes that statements link: the subject, and a value that is a name."""
+        from rdflib import URIRef
+
+        named = ((subject, value) for subject, _, value in self.triples if isinstance(value, URIRef))
+        return frozenset((str(subject), str(value)) for subject, value in named)
+
+    @cached_property
+    def nodes(self) -> frozenset[str]:
+        """All nodes in statements: subjects, and values that are names."""
+        return self.subjects | {value for _, value in self.links}
 
     def values(self, term: str) -> frozenset[str]:
         """Return the nodes that are values of a property (CURIE)."""
