@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -89,15 +90,60 @@ def test_our_cells_are_those_of_the_csv_module() -> None:
     assert model_text(rows[:1], "x:").count("Requirement") == 1
 
 
-def test_a_graph_is_not_taken_for_a_model_without_requirements(
+@pytest.mark.parametrize("form", ["ttl", "json-ld"])
+def test_requirements_of_a_graph_have_the_coverage_of_the_text(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str
+) -> None:
+    text, graph = model(tmp_path, NEED + OTHER), tmp_path / f"needs.{form.replace('-', '')}"
+    assert main(["graph", text, "--format", form]) == 0
+    graph.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(["requirements", text, "--links-only"]) == 1
+    expected = capsys.readouterr().out
+    assert "✔ R-1: fetching.bench-to-tray\n✗ R-2 (4.1/a): no scenario\n1 of 2" in expected
+    assert main(["requirements", str(graph), "--links-only"]) == 1
+    assert capsys.readouterr().out == expected
+    assert main(["requirements", str(graph)]) == 1
+    assert "? R-1: not run, 0 of 0 executions (fetching.bench-to-tray)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("first", ["ttl", "jsonld"])
+def test_requirements_go_through_every_form_and_stay_the_same(tmp_path: Path, first: str) -> None:
+    """Text → graph → text → ReqIF → graph → table → graph: the last graph is the first one."""
+    name = "https://example.org/t/"
+    chain = ["main.bdd", f"a.{first}", "b.bdd", "c.reqif", "d.ttl", "e.csv", f"f.{first}"]
+    model(tmp_path, NEED + OTHER)
+    for source, target in pairwise(tmp_path / one for one in chain):
+        is_model = source.suffix == ".bdd"
+        options = ["--links-only"] if is_model or target.suffix == ".csv" else ["--namespace", name]
+        assert main(["requirements", str(source), "-o", str(target), *options]) in (0, 1)
+    assert (tmp_path / chain[-1]).read_text(encoding="utf-8") == (tmp_path / chain[1]).read_text(encoding="utf-8")
+    assert name + "R-2" in (tmp_path / "d.ttl").read_text(encoding="utf-8").replace("t:", name)
+
+
+def test_requirements_of_other_tools_are_read_from_their_graph(tmp_path: Path) -> None:
+    graph, text = tmp_path / "tool.ttl", tmp_path / "needs.bdd"
+    graph.write_text(
+        "@prefix o: <http://open-services.net/ns/rm#> .\n@prefix d: <http://purl.org/dc/terms/> .\n"
+        '<https://tool.example/req/42> a o:Requirement ; d:identifier "SYS-7" ; d:title "Stop" ;\n'
+        '  d:description "The arm stops." ; d:source <https://tool.example/spec> .\n'
+        '<https://tool.example/req/R-3> a o:Requirement ; d:identifier "R-3" ; d:title "Only a title" .\n'
+        "<https://tool.example/req/none> a o:Requirement .\n",
+        encoding="utf-8",
+    )
+    assert main(["requirements", str(graph), "-o", str(text), "--namespace", "https://example.org/n/"]) == 0
+    written = text.read_text(encoding="utf-8")
+    assert 'SYS-7 {\n    "The arm stops."\n    source: "https://tool.example/spec"\n}' in written
+    assert 'R-3 {\n    "Only a title"\n}' in written
+    assert written.count("Requirement (") == 2
+
+
+def test_a_broken_graph_is_refused_at_its_place_and_a_model_needs_a_namespace(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     graph = tmp_path / "needs.ttl"
-    assert main(["graph", model(tmp_path, NEED)]) == 0
-    graph.write_text(capsys.readouterr().out, encoding="utf-8")
-    assert main(["requirements", str(graph)]) == 2
-    command = capsys.readouterr().err.partition("(robbdd ")[2].partition(")")[0].split()
-    text = tmp_path / "text.bdd"
-    assert main([*command[:-1], str(text)]) == 0
-    assert main(["requirements", str(text), "--links-only"]) == 0
-    assert "R-1: fetching.bench-to-tray" in capsys.readouterr().out
+    graph.write_text("@prefix x: <https://x/> .\nx:a x:b [ .\n", encoding="utf-8")
+    order = ["requirements", str(graph), "-o", str(tmp_path / "n.bdd")]
+    assert main([*order, "--namespace", "https://x/"]) == 2
+    assert f"{graph}:2:" in capsys.readouterr().err
+    assert main(order) == 2
+    assert "--namespace IRI" in capsys.readouterr().err

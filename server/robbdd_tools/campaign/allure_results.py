@@ -15,6 +15,7 @@ from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.report_source import run_report
+from robbdd_tools.graph.verified_requirements import names_by_variant
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.plot import plot
 from robbdd_tools.run.readable import title
@@ -86,6 +87,7 @@ def _document(
         ("subSuite", result.name.rpartition(" -- ")[0]),
         ("feature", result.story.replace("#", "/").rpartition("/")[2]),
         ("story", result.name.rpartition(" -- ")[0]),
+        *(("requirement", name) for name in names_by_variant(source.requirements).get(result.variant, ())),
     ]
     return {
         "uuid": unique,

@@ -15,6 +15,7 @@ from robbdd_tools.campaign.report_factors import (
     repeated,
     script_json,
 )
+from robbdd_tools.campaign.requirement_rows import requirement_results, requirement_summary
 from robbdd_tools.run.report import SIGNS
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def report_page(source: ReportSource, moments: str = "", problem: str = "") -> s
     results = source.results
     summary = counts(result.verdict for result in results)
     failed, varied = failed_rows(source), factors(results)
+    required = requirement_results(source.requirements, results)
     heat = {
         "factors": [{"name": one.name, "levels": one.levels, "of": one.of} for one in varied],
         "verdicts": [str(result.verdict) for result in results],
@@ -41,6 +43,8 @@ def report_page(source: ReportSource, moments: str = "", problem: str = "") -> s
         title=source.title,
         summary=summary,
         state=source.state,
+        requirements=required,
+        shown=requirement_summary(required),
         clauses=clause_rows(results),
         factors=varied,
         effects=effect_rows(varied, results),

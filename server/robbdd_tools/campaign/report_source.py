@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.campaign.study_executions import study_executions
 from robbdd_tools.protocol.run_folder import curves_file
 from robbdd_tools.run.json_documents import NoTrace, stored_curves
+from robbdd_tools.workbench.recorded_requirements import read_requirements, requirements_from
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.report_moments import Moment, Moments
     from robbdd_tools.campaign.study_again import Again
+    from robbdd_tools.graph.verified_requirements import LinkedRequirement
     from robbdd_tools.run.study_reader import StudyReader
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
     from robbdd_tools.workbench.stored import PastRun
@@ -26,6 +28,7 @@ class ReportSource:
     - ``state``: the reason why the results are incomplete; empty if they are complete.
     - ``environment``: names and values, in words.
     - ``command``: returns the command that executes a result again; empty if there is none.
+    - ``requirements``: the requirements of the models, as recorded when the run or study began.
     - ``curves``: returns the stored margins of a result over time, by feature line, and the feature lines of its
       clauses; both are empty if nothing is stored.
     """
@@ -37,6 +40,7 @@ class ReportSource:
     command: Callable[[ExecutionResult], str]
     curves: Callable[[ExecutionResult], tuple[Mapping[str, object], tuple[int, ...]]]
     moments: Mapping[int, Moment] = field(default_factory=dict[int, "Moment"])
+    requirements: tuple[LinkedRequirement, ...] = ()
 
 
 def run_report(run: PastRun) -> ReportSource:
@@ -60,7 +64,9 @@ def run_report(run: PastRun) -> ReportSource:
 
     title = f"{record.path}: run {run.number}" if run.number else record.path
     environment = tuple((name, value) for name, value in rows if value)
-    return ReportSource(title, run.results, run.status.words(), environment, command, curves)
+    required = read_requirements(run.folder)
+    state = run.status.words()
+    return ReportSource(title, run.results, state, environment, command, curves, requirements=required)
 
 
 def study_report(name: str, store: StudyReader) -> ReportSource:
@@ -76,7 +82,9 @@ def study_report(name: str, store: StudyReader) -> ReportSource:
     def command(result: ExecutionResult) -> str:
         return shlex.join(["robbdd", "study", "replay", name, str(result.index + 1)])
 
-    return ReportSource(name, results, state, tuple(environment), command, lambda _: ({}, ()))
+    required = requirements_from(facts.get("requirements", "[]"))
+    shown_facts = tuple(environment)
+    return ReportSource(name, results, state, shown_facts, command, lambda _: ({}, ()), requirements=required)
 
 
 def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> ReportSource:

@@ -18,6 +18,7 @@ from robbdd_tools.campaign.designs import design_points
 from robbdd_tools.campaign.rates import StatisticsNotInstalled
 from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
 from robbdd_tools.campaign.study_ranges import form_faults, range_faults
+from robbdd_tools.graph.verified_requirements import merged_links
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.run_policy import TIMEOUT
 from robbdd_tools.syntax.study_content import STUDY, Factor, StudyText, Word
@@ -31,6 +32,7 @@ from robbdd_tools.workbench.points import block_seeds
 if TYPE_CHECKING:
     from robbdd_tools.campaign.study_ranges import Fault
     from robbdd_tools.catalog.executable import SceneInstance
+    from robbdd_tools.graph.verified_requirements import LinkedRequirement
     from robbdd_tools.workbench.points import Points
 
 SUFFIX = f".{STUDY}"
@@ -94,6 +96,11 @@ class Study:
         if "stop width" in numbers:
             return UntilWidth(numbers["stop width"])
         return RatioTest(numbers["stop rate"], numbers["stop against"]) if "stop rate" in numbers else None
+
+    @property
+    def requirements(self) -> tuple[LinkedRequirement, ...]:
+        """The requirements of the models. All cells have the same models."""
+        return merged_links(file.requirements for file in self.cells[0].plan.files)
 
     @cached_property
     def digest(self) -> str:

@@ -23,6 +23,7 @@ from robbdd_tools.run.report import values_words
 from robbdd_tools.run.store import LOCK, NoSuchRun, begin_in, run_in
 from robbdd_tools.run.stored_results import FINISHED
 from robbdd_tools.run.study_store import StudyStore
+from robbdd_tools.workbench.recorded_requirements import requirements_text
 from robbdd_tools.workbench.resuming import resume
 from robbdd_tools.workbench.run import Run
 
@@ -240,7 +241,8 @@ class StudyRun:
             if resumed:
                 raise StudyProblem("the study was never begun: `robbdd study run` begins it")
             facts = {"digest": self._study.digest, "version": __version__}
-            self.store.note({**facts, "name": self._study.name, "total": str(self.total)})
+            required = requirements_text(self._study.requirements)
+            self.store.note({**facts, "name": self._study.name, "total": str(self.total), "requirements": required})
         elif not resumed:
             finished, _ = self._stored()
             what = f"has {finished} of {self.total} executions"

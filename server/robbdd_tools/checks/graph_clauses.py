@@ -33,8 +33,8 @@ from robbdd_tools.graph.acceptance_model import (
     TextFluent,
     behaviour_clauses,
     every_clause,
-    named_events,
 )
+from robbdd_tools.graph.clause_parts import named_events
 from robbdd_tools.protocol.time_words import time_words
 
 if TYPE_CHECKING:

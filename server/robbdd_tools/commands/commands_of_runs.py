@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Protocol
 
+from robbdd_tools.base.graph_formats import graph_format
 from robbdd_tools.commands.arguments import positive
 from robbdd_tools.commands.log_arguments import allow_log, judge_options
 from robbdd_tools.commands.lost_output import output_may_be_lost
@@ -40,7 +41,7 @@ def _add_runs(commands: AddsCommands) -> None:
 
 def _add_requirements(commands: AddsCommands) -> None:
     listed = commands.add_parser(
-        "requirements", help="coverage of requirements by scenarios and stored runs; CSV and ReqIF"
+        "requirements", help="coverage of requirements by scenarios and stored runs; CSV, ReqIF and graphs"
     )
     listed.add_argument("path", metavar="FILE|DIR|TABLE.csv|SPEC.reqif", type=Path, help="models, or a file to import")
     listed.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*")
@@ -49,10 +50,12 @@ def _add_requirements(commands: AddsCommands) -> None:
         "--output",
         metavar="OUT",
         type=Path,
-        help="write a .csv, a .reqif or a page (.html); of a table, the model",
+        help="write a .csv, a .reqif, a graph (.ttl, .jsonld) or a page (.html); of a table, the model or a graph",
     )
     listed.add_argument("--links-only", action="store_true", help="only whether a scenario verifies each; no results")
-    listed.add_argument("--namespace", metavar="IRI", help="namespace of the requirements of a table")
+    listed.add_argument(
+        "--namespace", metavar="IRI", help="import a table or a graph: the namespace of its requirements"
+    )
     listed.add_argument("--force", action="store_true", help="replace an existing model")
     allow_store(listed)
     listed.set_defaults(command=_requirements)
@@ -61,7 +64,8 @@ def _add_requirements(commands: AddsCommands) -> None:
 def _requirements(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.list_requirements import import_requirements, list_requirements
 
-    if options.path.suffix.lower() in (".csv", ".reqif"):
+    is_table = options.path.suffix.lower() in (".csv", ".reqif")
+    if is_table or (options.namespace is not None and graph_format(options.path.name)):
         return import_requirements(options.path, options.output, options.namespace, overwrite=options.force)
     paths = (options.path, *options.more)
     return list_requirements(paths, options.store, options.output, links_only=options.links_only)

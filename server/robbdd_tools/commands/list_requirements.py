@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import read_text
 from robbdd_tools.base.graph_formats import graph_format
@@ -14,10 +16,12 @@ from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.rejudged_results import SIGNS
 from robbdd_tools.features.run_verdicts import NOTHING
+from robbdd_tools.syntax.parse import LANGUAGES
 from robbdd_tools.workbench.coverage_page import SUFFIXES, coverage_page
 from robbdd_tools.workbench.model import load_all
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.reqif_file import SUFFIX, read_reqif, reqif_text
+from robbdd_tools.workbench.requirement_graphs import graph_rows, graph_text, read_requirement_graph
 from robbdd_tools.workbench.requirement_table import (
     NO_SCENARIO,
     RequirementRow,
@@ -30,28 +34,32 @@ from robbdd_tools.workbench.requirement_table import (
 )
 from robbdd_tools.workbench.stored import store_at
 
+if TYPE_CHECKING:
+    from robbdd_tools.run.store import RunStore
+    from robbdd_tools.workbench.model import Model
+
 _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`]*[/#:]")
 
 
 def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | None, *, links_only: bool) -> int:
     """Print the coverage of the requirements of models, and write it to ``output``; return the exit code.
 
-    The suffix of ``output`` selects ReqIF, a page (HTML) or CSV. The exit code is 1 unless a scenario verifies each
-    requirement and, without ``links_only``, each held in the last runs.
+    The suffix of ``output`` selects ReqIF, a graph, a page (HTML) or CSV. The exit code is 1 unless a scenario verifies
+    each requirement and, without ``links_only``, each held in the last runs.
     """
+    if output is not None and output.suffix[1:].lower() in LANGUAGES:
+        return fail(
+            f"to write a model such as {output}, import a table or a graph: name its namespace (--namespace IRI)"
+        )
     try:
         model = load_all(paths)
     except NotAModel as error:
         return fail(str(error))
-    graph = next((file.name for file in model.files if graph_format(file.name)), None)
-    if graph is not None:
-        made = f"robbdd import {graph} -o {Path(graph).stem}.bdd"
-        return fail(f"requirements in graphs are not read: write {graph} as text ({made}), and name that file")
     errors = [finding for finding in model.diagnostics if finding.is_error]
     if errors:
         print_findings(errors, print_note)
         return FINDINGS
-    rows = requirement_rows(model, NOTHING if links_only else stored_findings(store_at(paths[0], store)))
+    rows = _rows(model, store_at(paths[0], store), links_only=links_only)
     if not rows:
         print_note("robbdd: no requirements: declare one by 'Requirement name { \"…\" }'")
     for row in rows:
@@ -69,8 +77,20 @@ def list_requirements(paths: Sequence[Path], store: Path | None, output: Path | 
     return FINDINGS if missing else OK
 
 
+def _rows(model: Model, store: RunStore, *, links_only: bool) -> list[RequirementRow]:
+    """Return the requirements of the text models, then those of the graphs, each once."""
+    findings = NOTHING if links_only else stored_findings(store)
+    texts = replace(model, files=[file for file in model.files if not graph_format(file.name)])
+    found = {row.iri or row.name: row for row in requirement_rows(texts, findings)}
+    for file in model.files:
+        if graph_format(file.name):
+            for row in graph_rows(file, findings.variants, store):
+                found.setdefault(row.iri, row)
+    return list(found.values())
+
+
 def import_requirements(table: Path, output: Path | None, namespace: str | None, *, overwrite: bool) -> int:
-    """Write the requirements of a CSV table or a ReqIF file as a model; return the exit code."""
+    """Write the requirements of a table (CSV), a ReqIF file or a graph as a model or a graph; return the exit code."""
     if output is None or namespace is None:
         return fail(f"to import {table}, name the model (-o NEEDS.bdd) and its namespace (--namespace IRI)")
     if not _IRI.fullmatch(namespace):
@@ -81,8 +101,9 @@ def import_requirements(table: Path, output: Path | None, namespace: str | None,
     if output.exists() and not overwrite:
         return fail(f"{output} exists: add --force to replace it")
     try:
-        rows = read_reqif(table, text) if table.suffix.lower() == SUFFIX else read_table(table, text)
-        replace_file(output, model_text(rows, namespace))
+        rows = _read(table, text)
+        is_graph = graph_format(output.name) != ""
+        replace_file(output, graph_text(output, rows, namespace) if is_graph else model_text(rows, namespace))
     except TableProblem as error:
         return fail(str(error))
     except OSError as error:
@@ -91,11 +112,19 @@ def import_requirements(table: Path, output: Path | None, namespace: str | None,
     return OK
 
 
+def _read(table: Path, text: str) -> list[RequirementRow]:
+    if graph_format(table.name):
+        return read_requirement_graph(table, text)
+    return read_reqif(table, text) if table.suffix.lower() == SUFFIX else read_table(table, text)
+
+
 def _written(output: Path, rows: Sequence[RequirementRow], *, links_only: bool) -> str:
     """Return the content of a file of requirements in the format of its suffix. Raises ``TableProblem``."""
     suffix = output.suffix.lower()
     if suffix == SUFFIX:
         return reqif_text(output, rows)
+    if graph_format(output.name):
+        return graph_text(output, rows)
     return coverage_page(rows, links_only=links_only) if suffix in SUFFIXES else table_text(rows)
 
 

@@ -18,6 +18,7 @@ from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import print_unfinished
+from robbdd_tools.graph.verified_requirements import names_by_variant
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.database import DatabaseProblem
@@ -27,6 +28,7 @@ from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.model import ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.plan import Plan, Selection
+from robbdd_tools.workbench.recorded_requirements import read_requirements
 from robbdd_tools.workbench.rerun import NothingFailed, failed_in, last_run
 from robbdd_tools.workbench.run import Run
 from robbdd_tools.workbench.stored import store_at
@@ -116,7 +118,7 @@ def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
             print_note(f"resume it with: robbdd run --resume {run.number or run.folder}")
     if outputs.record is not None:
         _record(run.folder, outputs.record)
-    _report(results, outputs)
+    _report(results, outputs, run.folder)
     if run.problem:
         return fail(run.problem)
     if ended_by:
@@ -174,13 +176,13 @@ def _unwritable(outputs: Outputs) -> str:
     return ""
 
 
-def _report(results: RunResults, outputs: Outputs) -> None:
+def _report(results: RunResults, outputs: Outputs, folder: Path) -> None:
     from robbdd_tools.run.junit import junit
 
     if outputs.report is not None:
         replace_file(outputs.report, printable_json(results.as_json(), indent=1) + "\n")
     if outputs.junit is not None:
-        replace_file(outputs.junit, junit(results))
+        replace_file(outputs.junit, junit(results, names_by_variant(read_requirements(folder))))
 
 
 def _record(folder: Path, target: Path) -> None:

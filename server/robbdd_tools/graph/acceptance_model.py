@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from robbdd_tools.base.selections import SelectionRule
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
+from robbdd_tools.graph.requirement import Requirement
 from robbdd_tools.graph.shown_properties import Column
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
@@ -160,17 +161,6 @@ def every_clause(clauses: Iterable[Clause]) -> Iterator[Clause]:
                 yield from every_clause(inner)
             case _:
                 pass
-
-
-def named_events(clause: Clause) -> Iterator[Iri]:
-    """Yield the events of a clause's time constraint, or the event of an event clause."""
-    if isinstance(clause, EventClause):
-        yield clause.event
-    time = getattr(clause, "time", None)
-    for name in ("event", "start", "end"):
-        event = getattr(time, name, None)
-        if event is not None:
-            yield Iri(event)
 
 
 def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
@@ -329,6 +319,7 @@ class AcceptanceModel:
     - ``verifies``: the requirements that a story, a variant, a template or a clause verifies.
     - ``implementations``: all implementations of behaviours, also those that no execution uses.
     - ``stated_settings``: maps an object to the configurations that its properties state, such as its mass (kg).
+    - ``requirements``: all requirements in the order of their IRIs.
     """
 
     stories: tuple[Story, ...]
@@ -341,6 +332,7 @@ class AcceptanceModel:
     verifies: Mapping[Iri, tuple[Iri, ...]] = field(default_factory=dict[Iri, tuple[Iri, ...]])
     implementations: tuple[Implementation, ...] = ()
     stated_settings: Mapping[Iri, Mapping[str, str]] = field(default_factory=dict[Iri, Mapping[str, str]])
+    requirements: tuple[Requirement, ...] = ()
 
     def curie(self, iri: str) -> str:
         """Return an IRI as a CURIE of the longest matching namespace. If none matches, return the IRI itself."""

@@ -1,11 +1,11 @@
-"""The parts of a body: each has one When or one ``for all``, and the Given and Then clauses around it."""
+"""The parts of a body (a When or a ``for all``, and the Given and Then around it), and the events of clauses."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from robbdd_tools.graph.acceptance_model import BehaviourClause, Clause, EventClause, ForAll, behaviour_clauses
+from robbdd_tools.graph.acceptance_model import BehaviourClause, Clause, EventClause, ForAll, Iri, behaviour_clauses
 
 
 def part_numbers(clauses: Iterable[Clause]) -> tuple[int, ...]:
@@ -73,3 +73,14 @@ def _marked(clause: Clause) -> Clause:
             return replace(clause, clauses=tuple(map(_marked, clause.clauses)))
         case _:
             return clause
+
+
+def named_events(clause: Clause) -> Iterator[Iri]:
+    """Yield the events of a clause's time constraint, or the event of an event clause."""
+    if isinstance(clause, EventClause):
+        yield clause.event
+    time = getattr(clause, "time", None)
+    for name in ("event", "start", "end"):
+        event = getattr(time, name, None)
+        if event is not None:
+            yield Iri(event)

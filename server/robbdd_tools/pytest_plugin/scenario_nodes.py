@@ -15,6 +15,7 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.graph.acceptance_model import behaviour_clauses
+from robbdd_tools.graph.verified_requirements import names_by_variant
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.pytest_plugin.failure_text import Failure, failure
 from robbdd_tools.pytest_plugin.node_names import local_name, scenario_names
@@ -148,6 +149,8 @@ class ScenarioItem(pytest.Item):
             for clause in result.clauses
             if clause.margin is not None and clause.unit
         ]
+        verified = names_by_variant(self.file.requirements).get(self.spec.variant, ())
+        self.user_properties += [("requirement", name) for name in verified]
         if executed.output:
             self.add_report_section("setup", "stdout", "\n".join(executed.output))
         if result.verdict is Outcome.UNKNOWN:

@@ -15,9 +15,8 @@ from robbdd_tools.graph.acceptance_model import (
     Iri,
     Variant,
     every_clause,
-    named_events,
 )
-from robbdd_tools.graph.clause_parts import whens_of
+from robbdd_tools.graph.clause_parts import named_events, whens_of
 
 if TYPE_CHECKING:
     from robbdd_tools.run.related_scenarios import Linked

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from xml.etree import ElementTree
 
@@ -14,20 +14,30 @@ from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.report import SIGNS, plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult, unjudged
 
+Requirements = Mapping[str, Sequence[str]]
+"""IRI of a variant → names of the requirements that it verifies."""
 
-def junit(results: RunResults) -> str:
+
+def junit(results: RunResults, requirements: Requirements | None = None) -> str:
     """Return the results as JUnit XML.
 
-    A violated clause is a failure and an unknown clause is an error. ``time`` is the wall time in s.
+    A violated clause is a failure and an unknown clause is an error. ``time`` is the wall time in s. ``requirements``
+    maps variants to the requirements that they verify; the output of their test cases names these.
     """
     root = ElementTree.Element("testsuites")
     for story, scenarios in groupby(results.scenarios, key=lambda scenario: scenario.spec.story):
-        _suite(root, story, list(scenarios), results)
+        _suite(root, story, list(scenarios), results, requirements or {})
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult], results: RunResults) -> None:
+def _suite(
+    root: ElementTree.Element,
+    story: str,
+    scenarios: list[ScenarioResult],
+    results: RunResults,
+    requirements: Requirements,
+) -> None:
     outcomes = [scenario.verdict for scenario in scenarios]
     suite = ElementTree.SubElement(root, "testsuite", name=printable(story.replace("#", "/").rsplit("/", 1)[-1]))
     suite.set("tests", str(len(scenarios)))
@@ -36,10 +46,13 @@ def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult
     suite.set("skipped", "0")
     suite.set("time", f"{sum(map(_wall, scenarios)):.3f}")
     for scenario in scenarios:
-        _case(suite, scenario, results.faults_of(scenario))
+        verified = requirements.get(scenario.spec.variant, ())
+        _case(suite, scenario, results.faults_of(scenario), verified)
 
 
-def _case(suite: ElementTree.Element, scenario: ScenarioResult, faults: list[Fault]) -> None:
+def _case(
+    suite: ElementTree.Element, scenario: ScenarioResult, faults: list[Fault], requirements: Sequence[str]
+) -> None:
     spec = scenario.spec
     group = spec.variant.replace("#", "/").rsplit("/", 1)[-1]
     group = group if spec.execution is None else f"{group}.{spec.execution.name.rpartition(':')[2]}"
@@ -55,7 +68,10 @@ def _case(suite: ElementTree.Element, scenario: ScenarioResult, faults: list[Fau
         element.text = _lines((*(words for _, words in failed), *_tracebacks(faults)))
     output = ElementTree.SubElement(case, "system-out")
     printed = (f"│ {line}" for line in scenario.printed.splitlines())
-    output.text = _lines((f"seed {spec.seed}", *spec.choices, *(words for _, words in _clauses(scenario)), *printed))
+    verified = [f"verifies {', '.join(requirements)}"] if requirements else []
+    output.text = _lines(
+        (f"seed {spec.seed}", *verified, *spec.choices, *(words for _, words in _clauses(scenario)), *printed)
+    )
 
 
 def _tracebacks(faults: Iterable[Fault]) -> Iterable[str]:

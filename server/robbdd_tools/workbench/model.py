@@ -22,6 +22,7 @@ from robbdd_tools.workbench.scene_choice import SceneChoiceError
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
+    from robbdd_tools.graph.verified_requirements import LinkedRequirement
     from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.workbench.plan import Plan
 
@@ -69,6 +70,13 @@ class ModelFile:
         from robbdd_tools.graph.places import placed_model
 
         return placed_model(self.graph, self.snapshot)
+
+    @cached_property
+    def requirements(self) -> tuple[LinkedRequirement, ...]:
+        """The requirements of the model with the scenarios and clauses that verify them; raises ``ModelErrors``."""
+        from robbdd_tools.graph.verified_requirements import requirement_links
+
+        return requirement_links(self.acceptance)
 
     def place(self, iri: str) -> Place | None:
         """Return the place where an element is declared, or ``None`` if this model does not declare it.

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.features.project_findings import findings_of
+from robbdd_tools.features.rejudged_results import BADNESS
 from robbdd_tools.features.requirement_results import Coverage, coverage
 from robbdd_tools.features.run_verdicts import Results
 from robbdd_tools.names.elements import site_of
@@ -58,7 +59,8 @@ class RequirementRow:
     """A requirement with its coverage.
 
     ``verdict`` is ``holds``, ``violated``, ``unknown`` or ``undefined``; or ``no scenario``, ``not run`` (some scenario
-    that verifies it), ``stale`` (the text has changed since) or ``vacuous``, which are no proof either.
+    that verifies it), ``stale`` (the text has changed since) or ``vacuous``, which are no proof either. ``iri`` is
+    empty if no model declares the requirement yet.
     """
 
     name: str
@@ -67,6 +69,7 @@ class RequirementRow:
     source: str
     evidence: tuple[ScenarioCell, ...] = ()
     verdict: str = NO_SCENARIO
+    iri: str = ""
 
     @property
     def scenarios(self) -> tuple[str, ...]:
@@ -124,19 +127,22 @@ def _row(snapshot: Snapshot, found: Coverage) -> RequirementRow:
         )
         for one in found.evidence
     )
-    return RequirementRow(found.requirement.symbol.path, identifier, text, source, evidence, _verdict(found))
+    iri = found.requirement.iri or ""
+    return RequirementRow(found.requirement.symbol.path, identifier, text, source, evidence, verdict_of(evidence), iri)
 
 
-def _verdict(found: Coverage) -> str:
-    if not found.evidence:
+def verdict_of(evidence: Sequence[ScenarioCell]) -> str:
+    """Return the verdict on a requirement that some scenarios verify."""
+    if not evidence:
         return NO_SCENARIO
-    if found.outcome not in ("", "holds"):
-        return found.outcome
-    if not all(one.outcome for one in found.evidence):
+    worst = min((one.outcome for one in evidence if one.outcome), key=BADNESS.index, default="")
+    if worst not in ("", "holds"):
+        return worst
+    if not all(one.outcome for one in evidence):
         return NOT_RUN
-    if any(one.stale for one in found.evidence):
+    if any(one.stale for one in evidence):
         return STALE
-    return VACUOUS if found.is_vacuous else found.outcome
+    return VACUOUS if all(one.vacuous for one in evidence) else worst
 
 
 def table_text(rows: Sequence[RequirementRow]) -> str:

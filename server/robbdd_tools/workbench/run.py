@@ -12,6 +12,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
+from robbdd_tools.graph.verified_requirements import merged_links
 from robbdd_tools.protocol.messages import ScenarioFinished
 from robbdd_tools.run.debugging import debugged
 from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
@@ -23,6 +24,7 @@ from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result, execution_results
 from robbdd_tools.workbench.judged_text import write_texts
+from robbdd_tools.workbench.recorded_requirements import write_requirements
 from robbdd_tools.workbench.stored import Recorded
 
 if TYPE_CHECKING:
@@ -314,6 +316,7 @@ def begin_recording(
         recording.begin(record, policy, prepared_digest(place.folder))
         place.write_record(record)
         write_texts(plan.texts, place.folder)
+        write_requirements(merged_links(file.requirements for file in plan.files), place.folder)
     except BaseException:
         recording.close()
         raise

@@ -23,6 +23,7 @@ from robbdd_tools.graph.read.behaviour_trees import read_trees
 from robbdd_tools.graph.read.clauses import ClauseReader, names_in_events, used_names
 from robbdd_tools.graph.read.executions import read_executions, read_implementations
 from robbdd_tools.graph.read.instances import InstanceReader, Places
+from robbdd_tools.graph.read.requirements import read_requirements
 from robbdd_tools.graph.read.scene_columns import read_columns
 from robbdd_tools.graph.read.stated_settings import read_stated_settings
 from robbdd_tools.graph.read.variations import VariationReader
@@ -55,8 +56,9 @@ def read_model(graph: Graph, places: Places = _nowhere, records: Records | None 
     verifies = {node: records.iris(records.all(node, VERIFIES)) for node in records.subjects(VERIFIES)}
     known = read_implementations(records, places)
     stated = read_stated_settings(records, (node for node, kind in kinds.items() if kind == "object"))
-    prefixes = reading_prefixes(graph)
-    return AcceptanceModel(every, kinds, sets, prefixes, executions, trees, correct, verifies, known, stated)
+    prefixes, required = reading_prefixes(graph), read_requirements(records)
+    rest = correct, verifies, known, stated, required
+    return AcceptanceModel(every, kinds, sets, prefixes, executions, trees, *rest)
 
 
 def _correct_places(records: Records, sets: Mapping[Iri, tuple[Value, ...]]) -> dict[Iri, tuple[Iri, ...]]:
