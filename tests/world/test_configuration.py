@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.objects.bin import HEIGHT
+from robbdd_tools.catalog.objects.cube import HALF
 from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.verdict import Outcome
@@ -41,6 +43,13 @@ def started(scene: SceneSpec = SCENE, seed: int = 1) -> Execution:
         (CUBE, "friction", "0.3"),
         (BIN, "height_scale", "0.8"),
         (BIN_WS, "height_scale", "1.2"),
+        (BIN, "width_scale", "0.9"),
+        (CUBE, "size_scale", "1.2"),
+        (CUBE, "position_ahead", "0.45"),
+        (BALL, "position_left", "-0.2"),
+        (CUBE, "contact_time", "0.01"),
+        (PANDA, "contact_time", "0.02"),
+        (PANDA, "grip_force", "7"),
         (PANDA, "ee_speed", "0.25"),
         (PANDA, "approach_speed", "0.1"),
         (PANDA, "travel_height", "0.4"),
@@ -82,6 +91,54 @@ def test_a_taller_bin_is_taller_and_so_is_its_workspace() -> None:
     assert tops == {BIN: pytest.approx(1.5 * HEIGHT / 2), OTHER_BIN: pytest.approx(HEIGHT / 2)}
     ((_, region),) = run.regions[BIN_WS]
     assert region.center[2] + region.half[2] == pytest.approx(1.5 * HEIGHT / 2)
+
+
+def test_a_wider_bin_is_wider_and_so_is_its_workspace() -> None:
+    run = started(configured((BIN, "width_scale", "0.8")))
+    ((_, narrow),), ((_, plain),) = run.regions[BIN_WS], started().regions[BIN_WS]
+    assert narrow.half == pytest.approx((0.8 * plain.half[0], 0.8 * plain.half[1], plain.half[2]))
+    assert narrow.center == pytest.approx(plain.center)
+
+
+def test_a_larger_cube_is_larger_in_all_directions_and_as_heavy() -> None:
+    model = started(configured((CUBE, "size_scale", "1.5"))).simulation.model
+    geom = model.body(CUBE).geomadr[0]
+    assert model.geom_size[geom] == pytest.approx([1.5 * HALF] * 3)
+    assert model.body(CUBE).mass[0] == pytest.approx(0.031)
+
+
+@pytest.mark.parametrize(("force", "holds"), [("8", True), ("6", False)])
+def test_fingers_hold_what_their_force_allows(force: str, holds: bool) -> None:
+    """2 μ F is 4.8 N and 3.6 N; the cube weighs 3.9 N, and more while it is lifted."""
+    scene = configured((PANDA, "grip_force", force), (CUBE, "mass", "0.4"), (CUBE, "friction", "0.3"))
+    run = execution([pick_place()], scene)
+    trace = run.advance_until(lambda _: False)
+    assert (trace.event_time("t:place-end") is not None) is holds
+
+
+def test_a_cup_pulls_with_the_given_force() -> None:
+    scene = replace(configured(("env:ur10", "grip_force", "20")), agents=("env:ur10",))
+    run = execution([pick_place(agent="env:ur10")], scene)
+    assert run.simulation.model.actuator("env:ur10/gripper").gainprm[0] == 20.0
+
+
+def test_contacts_have_the_time_constant_of_the_smoother_surface_or_of_the_gripping_face() -> None:
+    model = started(configured((BIN, "contact_time", "0.008"), (PANDA, "contact_time", "0.03"))).simulation.model
+    assert {float(model.geom_solref[geom, 0]) for geom in geoms_of(model, BIN)} == {0.008}
+    assert {float(model.geom_solref[geom, 0]) for geom in geoms_of(model, CUBE)} == {0.02}
+    assert {float(value) for value in model.pair_solref[:, 0]} == {0.03}
+
+
+def geoms_of(model: Any, name: str) -> range:
+    first = int(model.body(name).geomadr[0])
+    return range(first, first + int(model.body(name).geomnum[0]))
+
+
+def test_an_object_lies_exactly_where_it_is_placed() -> None:
+    scene = configured((CUBE, "position_ahead", "0.5"), (CUBE, "position_left", "-0.15"))
+    for seed in range(3):
+        run = started(scene, seed)
+        assert run.trace.positions[0, run.trace.column(CUBE), :2] == pytest.approx([0.5, -0.15], abs=1e-3)
 
 
 def test_things_lie_within_the_range_that_is_asked_for() -> None:
@@ -173,6 +230,9 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
         ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: it applies to a bin, tray or shelf"),
         ([("env:bolt", "mass", "1")], "'env:bolt', which should have mass = 1, is not in the scene"),
         ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' should have mass = 1 and 2"),
+        ([(CUBE, "position_ahead", "1.5")], "no part of 'env:bench', where 'env:cube1' should be"),
+        ([(CUBE, "grip_force", "5")], "'env:cube1' has no grip_force: it applies to an agent of the catalog"),
+        ([(BIN, "size_scale", "1.1")], "'env:bin1' has no size_scale: it applies to an object of the catalog to grasp"),
         ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' should be"),
     ],
 )

@@ -73,12 +73,17 @@ def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int =
 
     The same seed gives the same points. Raises ``SearchNotInstalled`` and ``StatisticsNotInstalled``.
     """
+    found = first_failure(evaluate, nominal, budget=budget, seed=seed, method=method)
+    return found if found.first is None else shrink(evaluate, nominal, found)
+
+
+def first_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = CMA_ES) -> Failure:
+    """Search for a failure with at most ``budget`` points, and leave it as it is found."""
     searched = 0
     for generation in _generations(evaluate, nominal, budget, seed, method):
         for number, one in enumerate(generation, start=1):
             if one.fails:
-                found = Failure(one, one, nominal, searched + number, searched + len(generation))
-                return shrink(evaluate, nominal, found)
+                return Failure(one, one, nominal, searched + number, searched + len(generation))
         searched += len(generation)
     return Failure(None, None, nominal, searched, searched)
 

@@ -15,9 +15,11 @@ OF_AGENTS = frozenset(
         "approach_speed",
         "attach_distance",
         "carry_clearance",
+        "contact_time",
         "drop_height",
         "ee_speed",
         "follow_speed",
+        "grip_force",
         "grip_time",
         "position_range",
         "release_time",
@@ -35,15 +37,17 @@ def agent_has(name: str) -> bool:
 def object_has(model: ObjectModel, name: str) -> bool:
     """Return whether an object of a model has a configuration of the catalog."""
     match name:
-        case "seed" | "friction":
+        case "seed" | "friction" | "contact_time":
             return True
-        case "position_range" | "drop_height":
+        case "position_range" | "drop_height" | "position_ahead" | "position_left":
             return model.graspable
+        case "size_scale":
+            return is_resizable(model)
         case "mass":
             return model.free
         case "belt_speed":
             return has_belt(model)
-        case "height_scale":
+        case "height_scale" | "width_scale":
             return is_scalable(model)
         case "opening":
             return model.joint is not None or model.moving is not None
@@ -55,6 +59,11 @@ def is_scalable(model: ObjectModel) -> bool:
     """Return whether an object is a loose container. A sphere keeps its proportions."""
     round_ones = any(shape.kind is ShapeKind.SPHERE or shape.solid is not None for shape in model.shapes)
     return model.free and model.region is not None and not round_ones
+
+
+def is_resizable(model: ObjectModel) -> bool:
+    """Return whether an object to grasp consists of primitives only, as those of the catalog do."""
+    return model.graspable and model.moving is None and all(shape.solid is None for shape in model.shapes)
 
 
 def can_move(model: ObjectModel) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import cos, sin
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,8 @@ from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, pair_stiff, rank_by_friction
+from robbdd_tools.world.grip_force import limit_grip
+from robbdd_tools.world.laid_out import laid_out
 from robbdd_tools.world.mobile_base import base_of, drive_by_servos
 from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
@@ -50,6 +52,7 @@ class World:
     - ``poses``: the poses of the objects before they settle.
     - ``seed``: the seed of all random choices.
     - ``resampled``: the number of random places that were sampled again because they overlapped or were out of reach.
+    - ``laid_out``: how far (m) ahead of the working robot's base, and to its left, objects on a table were laid out.
     """
 
     model: Any
@@ -58,6 +61,7 @@ class World:
     poses: Mapping[str, Pose]
     seed: int
     resampled: int
+    laid_out: Mapping[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
@@ -78,7 +82,8 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
     is_mobile = name is not None and base_of(cast.agents[name]) is not None
     arranged = arrange(scene, cast, base, np.random.default_rng(seed), is_mobile=is_mobile)
     model = compile_world(cast, bases, arranged.poses)
-    return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
+    places = laid_out(scene, cast, base, arranged.poses, is_mobile=is_mobile)
+    return World(model, cast, bases, arranged.poses, seed, arranged.resampled, places)
 
 
 def compile_objects(cast: Cast) -> Any:
@@ -106,22 +111,25 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         _add_object(spec, name, model, pose, len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
+        if (force := cast.chosen.get((name, "grip_force"))) is not None:
+            limit_grip(spec, name, robot, force[0])
         _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (0.0,))[0])
-    pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
+    shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
+    faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
+    _yield_slowly(spec, cast, shapes | faces)
+    pads = [pad for own in faces.values() for pad in own]
     loose = [
         shape_name(name, i) for name, model in cast.objects.items() if can_move(model) for i in range(len(model.shapes))
     ]
     pair_pads(spec, pads, loose)
     jaws = {name for name, model in cast.objects.items() if model.joint is not None}
     jaws |= {model.joint.parent for model in cast.objects.values() if model.joint is not None and model.joint.parent}
-    shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
     parts = [name for name, model in cast.objects.items() if model.graspable and name not in jaws]
     pair_stiff(
         spec, [geom for name in sorted(jaws) for geom in shapes[name]], [g for name in parts for g in shapes[name]]
     )
     if cast.staging is not None:
         pair_declared(spec, cast.staging.pairs_of_elements())
-        faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
         pair_given(spec, cast.staging.frictions, shapes | faces)
     rank_by_friction(spec, pads)
     if any(equality.type == mujoco.mjtEq.mjEQ_TENDON for equality in spec.equalities):
@@ -254,6 +262,13 @@ def _pull_from(spec: Any, pads: list[str], distance: float) -> None:
     """Let a vacuum pull from a distance (m): in this gap, the engine's contacts exert no force but adhesion."""
     for pad in pads if distance else ():
         spec.geom(pad).gap = distance
+
+
+def _yield_slowly(spec: Any, cast: Cast, geoms: Mapping[str, list[str]]) -> None:
+    """Give contacts the time constant (s) configured for an element, with critical damping."""
+    for (element, name), value in cast.chosen.items():
+        for geom in geoms[element] if name == "contact_time" else ():
+            spec.geom(geom).solref = [value[0], 1.0]
 
 
 def _attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:

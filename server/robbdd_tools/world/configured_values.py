@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.articulation import Opening
-from robbdd_tools.catalog.object_settings import is_scalable
+from robbdd_tools.catalog.object_settings import is_resizable, is_scalable
 from robbdd_tools.catalog.settings import NORMAL, Numbers, written
 from robbdd_tools.catalog.timetables import timetable_of
 from robbdd_tools.world.belts import belt_speed, belts_of
+from robbdd_tools.world.grip_force import grip_force, has_known_force
 from robbdd_tools.world.owners import joint_of_part
 from robbdd_tools.world.scene_configuration import CONTROLLER
 
@@ -40,8 +41,15 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "opening"] = ((at_start - closed) / (opened - closed),)
         for servo in belts_of(model, name)[:1]:
             settings[name, "belt_speed"] = (belt_speed(model, servo),)
+        settings[name, "contact_time"] = (float(model.geom_solref[geoms[0], 0]),)
+        width, height = (now / before for now, before in zip(_extent(model, geoms), cast.extents[name], strict=True))
         if is_scalable(thing):
-            settings[name, "height_scale"] = (_height(model, geoms) / cast.heights[name],)
+            settings[name, "height_scale"], settings[name, "width_scale"] = (height,), (width,)
+        if is_resizable(thing):
+            settings[name, "size_scale"] = (height,)
+        if name in simulation.world.laid_out:
+            ahead, left = simulation.world.laid_out[name]
+            settings[name, "position_ahead"], settings[name, "position_left"] = (ahead,), (left,)
     for name, robot in simulation.robots.items():
         for setting, attribute in CONTROLLER.items():
             settings[name, setting] = (getattr(robot.model, attribute),)
@@ -52,6 +60,9 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "drop_height"] = cast.drops[name]
         follow = (timetable_of(robot.model.name).follow_speed,)
         settings[name, "follow_speed"] = cast.chosen.get((name, "follow_speed"), follow)
+        if has_known_force(robot.model):
+            settings[name, "grip_force"] = (grip_force(model, name, robot.model),)
+        settings[name, "contact_time"] = (float(model.geom_solref[robot.pads[0], 0]),)
         settings[name, "attach_distance"] = (float(model.geom_gap[robot.pads[0]]),)
     # A seed may be configured for any element, such as the scene.
     for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
@@ -59,8 +70,9 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
     return {pair: written(value) for pair, value in settings.items()}
 
 
-def _height(model: Any, geoms: range) -> float:
-    """Return the height (m) of the bounding box of a body's geoms, which are aligned with the body."""
-    middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
-    half = model.geom_aabb[geoms, 5]
-    return float((middle + half).max() - (middle - half).min())
+def _extent(model: Any, geoms: range) -> tuple[float, float]:
+    """Return the width along x and the height (m) of the bounding box of a body's geoms, aligned with the body."""
+    middle = model.geom_pos[geoms] + model.geom_aabb[geoms, :3]
+    half = model.geom_aabb[geoms, 3:]
+    size = (middle + half).max(axis=0) - (middle - half).min(axis=0)
+    return float(size[0]), float(size[2])

@@ -160,7 +160,8 @@ def arrange(
     taken: list[_Disc] = []
     dropped: list[Ball] = []
     resampled = 0
-    for name, model in cast.objects.items():
+    for name in sorted(cast.objects, key=lambda one: not _is_exact(cast, one)):
+        model = cast.objects[name]
         if not model.graspable:
             continue
         walls = [(poses[other], cast.objects[other]) for other in bins] + ways
@@ -178,6 +179,12 @@ def arrange(
         poses[name] = pose
         resampled += rejected
     return Arrangement(poses, resampled)
+
+
+def _is_exact(cast: Cast, name: str) -> bool:
+    """Return whether a configuration leaves only one place for an object: it is laid out before the others."""
+    area = cast.ranges.get(name, NORMAL)
+    return area[0] == area[1] and area[2] == area[3]
 
 
 def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:

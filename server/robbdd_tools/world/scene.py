@@ -12,7 +12,8 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
 from robbdd_tools.world.openings import opening_of
-from robbdd_tools.world.scene_configuration import Configured, configure, height_of
+from robbdd_tools.world.resizing import extent_of
+from robbdd_tools.world.scene_configuration import Configured, configure
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -55,8 +56,8 @@ class Cast:
     """The executable scene's data on the elements, if there is one."""
     left_out: tuple[str, ...] = ()
     """Elements that no clause uses and that have no model or, for agents, no place."""
-    heights: Mapping[str, float] = field(default_factory=dict[str, float])
-    """Height (m) of each object before ``height_scale`` is applied."""
+    extents: Mapping[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
+    """Width along x and height (m) of each object before it is scaled."""
     openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
     """How each thing with a joint opens, or the reason why this is not known."""
 
@@ -144,7 +145,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     if all(can_move(model) or model.bystander for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
     stated = tuple(_stated(scene, objects))
-    heights = {name: height_of(model) for name, model in objects.items()}
+    extents = {name: extent_of(model) for name, model in objects.items()}
     found = Configured(objects, agents, openings)
     configure(found, ((config, _elements(scene, config.target)) for config in (*scene.config, *stated)))
     objects |= {name: centred(model) for name, model in objects.items()}
@@ -160,7 +161,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         found.judged,
         staging,
         tuple(left_out),
-        heights,
+        extents,
         openings,
     )
 

@@ -8,11 +8,11 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.articulation import Opening
-from robbdd_tools.catalog.api import GripperKind, ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
+from robbdd_tools.catalog.api import GripperKind, ObjectModel, RobotModel, Vector
 from robbdd_tools.catalog.object_settings import object_has
-from robbdd_tools.catalog.settings import SETTINGS, Numbers, SettingError, setting_of, written
+from robbdd_tools.catalog.settings import NORMAL, SETTINGS, Numbers, SettingError, setting_of, written
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.extent import bounds_of
+from robbdd_tools.world.resizing import resized, stretched, widened
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ConfigSpec
@@ -27,6 +27,8 @@ CONTROLLER = {
     "travel_height": "travel_height",
 }
 """Names of configurations for picking and placing → attributes of the agent's model."""
+ALONG = {"position_ahead": 0, "position_left": 2}
+"""Names of configurations of a place → the first of the two limits of ``position_range`` that they replace."""
 
 
 @dataclass(slots=True)
@@ -64,6 +66,11 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
                 other = written(known[element, config.name])
                 raise SceneError(f"'{config.target}' should have {config.name} = {other} and {config.value}")
             _apply(found, element, config, value)
+    for element, name in found.chosen:
+        if name in ALONG:
+            first = ALONG[name]
+            area = found.ranges.get(element, NORMAL)
+            found.ranges[element] = (*area[:first], *found.chosen[element, name] * 2, *area[first + 2 :])
 
 
 def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
@@ -82,9 +89,13 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             areas = found.ranges if name == "position_range" else found.drops
             areas |= {} if robot is None else dict.fromkeys(_loose(found, areas), value)
             areas[element] = value
-        case "follow_speed" as name if robot is not None:
+        case "follow_speed" | "grip_force" as name if robot is not None:
             found.chosen[element, name] = value
         case "attach_distance" as name if robot is not None and (robot.gripper is GripperKind.SUCTION or not value[0]):
+            found.chosen[element, name] = value
+        case "contact_time" as name if robot is not None or able is not None:
+            found.chosen[element, name] = value
+        case "position_ahead" | "position_left" as name if able is not None:
             found.chosen[element, name] = value
         case "mass" if able is not None:
             found.objects[element] = replace(able, mass=value[0])
@@ -94,7 +105,11 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case "belt_speed" if able is not None:
             found.objects[element] = _driven(able, value[0])
         case "height_scale" if able is not None:
-            found.objects[element] = _scaled(able, value[0])
+            found.objects[element] = stretched(able, value[0])
+        case "width_scale" if able is not None:
+            found.objects[element] = widened(able, value[0])
+        case "size_scale" if able is not None:
+            found.objects[element] = resized(able, value[0])
         case "opening" if isinstance(opening := found.openings.get(element), Opening):
             _open(found, opening, value[0])
         case name if thing is None and robot is None:
@@ -128,34 +143,3 @@ def _driven(model: ObjectModel, speed: float) -> ObjectModel:
         shape if shape.surface is None else replace(shape, surface=at_speed(shape.surface)) for shape in model.shapes
     )
     return replace(model, shapes=tuple(shapes))
-
-
-def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
-    """Stretch an object upwards from its lowest point."""
-    bottom = float(bounds_of(model.shapes)[0][2])
-
-    def raised(place: Vector) -> Vector:
-        return (place[0], place[1], bottom + factor * (place[2] - bottom))
-
-    def taller(shape: Shape) -> Shape:
-        a, b, c = shape.size
-        size = (a, factor * b, c) if shape.kind is ShapeKind.CYLINDER else (a, b, factor * c)
-        return replace(shape, size=size, position=raised(shape.position))
-
-    def stretched(region: Region) -> Region:
-        x, y, z = region.half
-        return replace(region, center=raised(region.center), half=(x, y, factor * z))
-
-    return replace(
-        model,
-        shapes=tuple(map(taller, model.shapes)),
-        inertia=None,
-        region=None if model.region is None else stretched(model.region),
-        parts=tuple(map(stretched, model.parts)),
-    )
-
-
-def height_of(model: ObjectModel) -> float:
-    """Return the height (m) of an object without its belts."""
-    low, high = bounds_of(tuple(shape for shape in model.shapes if shape.surface is None))
-    return float(high[2] - low[2])

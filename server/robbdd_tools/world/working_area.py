@@ -55,7 +55,17 @@ def _field_before_end(
 
 def _overlap(low: float, high: float, middle: float, half: float) -> tuple[float, float] | None:
     start, end = max(low, middle - half), min(high, middle + half)
-    return (start, end) if start < end else None
+    return (start, end) if start < end or low == high == start == end else None
+
+
+def before_base(base: Pose, table: Pose, model: ObjectModel, place: Pose) -> tuple[float, float]:
+    """Return how far (m) a place on a table is ahead of a robot's base and to its left, as in ``field_before``."""
+    x, y = (float(there - here) for there, here in zip(place.position[:2], base.position[:2], strict=True))
+    if model.region is not None and abs(base.position[1] - table.position[1]) > model.region.half[1]:
+        side = 1.0 if table.position[1] >= base.position[1] else -1.0
+        return side * y, -side * x
+    side = 1.0 if table.position[0] >= base.position[0] else -1.0
+    return side * x, side * y
 
 
 def side_of(rotation: FloatArray, region: Region, side: int) -> tuple[FloatArray, float, float]:
