@@ -121,6 +121,9 @@ def argument_parser() -> argparse.ArgumentParser:
     gherkin.add_argument(
         "--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own file"
     )
+    gherkin.add_argument(
+        "--expand", action="store_true", help="write the definitions of named predicates in place of their phrases"
+    )
     gherkin.add_argument("--seed", type=seed, default=None, help="seed of samples and runs (default: 1)")
     allow_selection(gherkin)
     gherkin.set_defaults(command=_gherkin)
@@ -249,7 +252,10 @@ def _graph(options: argparse.Namespace) -> int:
 def _gherkin(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.gherkin import GherkinOptions, write_gherkin
 
-    return write_gherkin(GherkinOptions(options.path, options.more, options.output, options.template, wanted(options)))
+    chosen = GherkinOptions(
+        options.path, options.more, options.output, options.template, wanted(options), options.expand
+    )
+    return write_gherkin(chosen)
 
 
 def _steps(options: argparse.Namespace) -> int:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
+
+from lsprotocol import types
 
 from kit import schema_errors
 from lsp_kit import CLIENTS, Editor, plain
+from robbdd_tools.base.files import path_to_uri
 
 
 async def preview_of(editor: Editor, **more: object) -> Any:
@@ -44,3 +48,20 @@ async def test_a_preview_of_nothing_says_so(editor: Editor) -> None:
 async def test_the_answer_to_a_preview_is_as_documented(editor: Editor) -> None:
     editor.open()
     assert schema_errors("preview.schema.json", plain(await preview_of(editor))) == []
+
+
+async def test_a_setting_writes_definitions_in_place_of_phrases(editor: Editor) -> None:
+    definition = (
+        "Predicate (ns=crit) <thing> is-in-the-hand of <robot>: ( <thing> is held by <robot> and <robot> moves safely )"
+    )
+    text = editor.text.replace("Scenario Template", f"{definition}\nScenario Template", 1)
+    editor.open(text.replace("<thing> is held by <robot>, ", "<thing> is-in-the-hand of <robot>, "))
+    assert "is-in-the-hand of" in (await preview_of(editor)).text
+    settings = {"robbdd": {"gherkin": {"expandPredicates": True}}}
+    editor.client.set_configuration(settings)
+    editor.client.set_configuration(settings, scope_uri=path_to_uri(editor.path.parent))
+    editor.client.workspace_did_change_configuration(types.DidChangeConfigurationParams(settings=settings))
+    while "is-in-the-hand of" in (shown := await preview_of(editor)).text:
+        await asyncio.sleep(0.05)
+    assert 'Then ( "env:' in shown.text
+    assert schema_errors("preview.schema.json", plain(shown)) == []

@@ -32,6 +32,11 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
           this.followAll();
         }
       }),
+      vscode.workspace.onDidChangeConfiguration((change) => {
+        if (change.affectsConfiguration("robbdd.gherkin")) {
+          this.refreshSoon();
+        }
+      }),
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
         this.follow(textEditor);
       }),

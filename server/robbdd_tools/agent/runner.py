@@ -16,9 +16,8 @@ from robbdd_tools.agent.debugger import await_debugger
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.session import UNKNOWN_SCENARIO
-from robbdd_tools.agent.steps import load_steps, register_named
+from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.base.descendants import end_descendants
-from robbdd_tools.judging.scenario_clauses import named_predicates
 from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.fault_places import original, sources_in
 from robbdd_tools.protocol.manifest_file import read_manifest
@@ -128,7 +127,6 @@ class Features:
         for line in orders:
             index = decode_request(line).index
             spec = self._manifest.scenarios[index]
-            register_named(named_predicates(clause.statement for clause in spec.clauses))
             tree = spec.tree
             if self._tree is not None and self._tree != tree:
                 self._end_descendants()

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.feature_wording import feature_wording
 from robbdd_tools.agent.scenario_run import ScenarioRun
 from robbdd_tools.agent.shared_executions import SharedExecutions
+from robbdd_tools.agent.steps import register_named
 from robbdd_tools.agent.violation_states import ViolationStates
+from robbdd_tools.judging.scenario_clauses import named_predicates
 from robbdd_tools.protocol.fault_places import sources_in
 from robbdd_tools.protocol.messages import LogLine
 from robbdd_tools.world.errors import SceneError
@@ -57,6 +59,7 @@ class Session:
         index = index if handed_out is None else handed_out
         self._moments.clear(index)
         spec = self._manifest.scenarios[index]
+        register_named(named_predicates(clause.statement for clause in spec.clauses))
         keep = self._folder if self._manifest.traces else None
         wording = feature_wording(feature)
         self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep, self._courses, wording)

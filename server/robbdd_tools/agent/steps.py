@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.judging.parsed_sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
+from robbdd_tools.judging.parsed_predicates import GROUP, NOT, sentence_pattern
+from robbdd_tools.judging.parsed_sentences import DEFINED, OCCURS, fluent_pattern
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.world.errors import SceneError
@@ -43,6 +44,7 @@ def register() -> None:
         behave.step("the scene is set up")(_set_up)
         for predicate in load_catalog().predicates.values():
             behave.step(fluent_pattern(predicate))(_judge)
+        behave.step(DEFINED)(_judge)
         behave.step(NOT)(_judge)
         behave.step(GROUP)(_judge)
         for behaviour in load_catalog().behaviours.values():

@@ -32,6 +32,7 @@ class GherkinOptions:
     - ``folder``: the folder to write.
     - ``template``: the name of a built-in template, or the path of a user's template.
     - ``wanted``: the selection of scenarios. Runs of the features use its ``seed``, too.
+    - ``expanded``: whether the definitions of named predicates replace their phrases.
     """
 
     path: Path
@@ -39,6 +40,7 @@ class GherkinOptions:
     folder: Path
     template: str
     wanted: Wanted
+    expanded: bool = False
 
 
 def write_gherkin(options: GherkinOptions) -> int:
@@ -62,7 +64,7 @@ def write_gherkin(options: GherkinOptions) -> int:
     if selected is None:
         return FAILED
     plan = whole_plan(model, clause_origins(built, file.snapshot, model))
-    plan = replace(plan, scenarios=selected.scenarios, sheet=template)
+    plan = replace(plan, scenarios=selected.scenarios, sheet=template, expanded=options.expanded)
     try:
         _write(plan, selected.total, options, serialize(built.graph, "json-ld"))
     except TemplateProblem as error:

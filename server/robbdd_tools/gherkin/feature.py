@@ -122,13 +122,15 @@ def feature_pieces(
     story: Story,
     scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario,
     sheet: Sheet | None = None,
+    *,
+    expanded: bool = False,
 ) -> Iterator[FeaturePiece]:
     """Yield the text of a story's feature piece by piece, in written order. Memory use does not grow with its size.
 
-    ``scenarios`` selects the scenarios of each variant. ``sheet`` is the template, by default the built-in one. Raises
-    ``TemplateProblem``.
+    ``scenarios`` selects the scenarios of each variant. ``sheet`` is the template, by default the built-in one. If
+    ``expanded`` is true, the definitions of named predicates replace their phrases. Raises ``TemplateProblem``.
     """
-    writer = _FeatureWriter(StepWriter(model, load_catalog()), sheet or our_sheet(), story)
+    writer = _FeatureWriter(StepWriter(model, load_catalog(), expanded=expanded), sheet or our_sheet(), story)
     return writer.pieces(scenarios)
 
 

@@ -40,7 +40,8 @@ class Origin:
 class FeaturePlan:
     """The content to write: the stories of a model, the scenarios of each variant, and the template.
 
-    ``origins`` are the source ranges of clauses, if known.
+    ``origins`` are the source ranges of clauses, if known. If ``expanded`` is true, the definitions of named predicates
+    replace their phrases.
     """
 
     model: AcceptanceModel
@@ -48,6 +49,7 @@ class FeaturePlan:
     scenarios: Callable[[Variant], Iterable[Numbered]]
     sheet: Sheet
     origins: Mapping[str, Origin]
+    expanded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +107,7 @@ def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenar
         path = folder / feature_file_name(plan.model, story)
         with replacing(path) as feature, replacing(path.with_name(path.name + MAP_ENDING)) as lines:
             line_map = _LineMap(plan, story, path.name, lines)
-            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):
+            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet, expanded=plan.expanded):
                 feature.write(piece.text)
                 if piece.scenario is not None:
                     line_map.add(piece.scenario)

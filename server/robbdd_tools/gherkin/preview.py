@@ -42,10 +42,13 @@ class Preview:
     total: int
 
 
-def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MAX_SHOWN) -> Preview:
+def preview(
+    snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MAX_SHOWN, *, expanded: bool = False
+) -> Preview:
     """Return a preview of the features of a file without errors, with at most ``most`` scenarios.
 
-    If ``variant`` is given, only its scenarios are shown.
+    If ``variant`` is given, only its scenarios are shown. If ``expanded`` is true, the definitions of named predicates
+    replace their phrases.
     """
     from robbdd_tools.graph.read.acceptance import read_model
     from robbdd_tools.graph.write.build import build_graph
@@ -54,16 +57,16 @@ def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int 
     model = read_model(built.graph)
     stories = [only(story, lambda iri: variant in (None, iri)) for story in model.stories]
     shown = [story for story in stories if story.variants]
-    return _written(model, shown, most, _Places(snapshot, uri, built.sources))
+    return _written(model, shown, most, _Places(snapshot, uri, built.sources), expanded)
 
 
-def _written(model: AcceptanceModel, stories: list[Story], most: int, places: _Places) -> Preview:
+def _written(model: AcceptanceModel, stories: list[Story], most: int, places: _Places, expanded: bool) -> Preview:
     total = sum(count(variant.variation) for story in stories for variant in story.variants)
     texts: list[str] = []
     lines: list[PreviewLine] = []
     shown = above = 0
     for story in stories:
-        for piece in _pieces(model, story, most - shown):
+        for piece in _pieces(model, story, most - shown, expanded):
             texts.append(piece.text)
             if piece.scenario is not None:
                 shown += 1
@@ -76,7 +79,7 @@ def _written(model: AcceptanceModel, stories: list[Story], most: int, places: _P
     return Preview(f"{text}\n" if text else "", tuple(lines), shown, total)
 
 
-def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[FeaturePiece]:
+def _pieces(model: AcceptanceModel, story: Story, most: int, expanded: bool) -> Iterator[FeaturePiece]:
     """Yield the pieces of a story with at most ``most`` scenarios."""
     limits: dict[str, int] = {}
     for variant in story.variants:
@@ -86,7 +89,7 @@ def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[Feature
     def first(variant: Variant) -> Iterator[Numbered]:
         return islice(every_scenario(variant), limits[variant.iri])
 
-    return feature_pieces(model, story, first)
+    return feature_pieces(model, story, first, expanded=expanded)
 
 
 class _Places:

@@ -37,10 +37,14 @@ def outline(
     """Return the outline of some clauses, or ``None`` if a table of values cannot express the scenarios.
 
     A table cannot express them if a quantifier has a set that varies, if parsers would read a cell differently, or if
-    only some of a variable's values are in the scene (``present``).
+    only some of a variable's values are in the scene (``present``). With expanded definitions, values may not be sets,
+    because a definition is only expanded for single elements.
     """
     columns = {variable: variable_name(variable) for variable in variation.variables}
-    words = [writer.word(cell) for cell in _cells(variation)]
+    cells = list(_cells(variation))
+    if writer.expanded and any(isinstance(cell, tuple) for cell in cells):
+        return None
+    words = [writer.word(cell) for cell in cells]
     if not columns or len(set(columns.values())) < len(columns) or not all(map(_plain, words)):
         return None
     values = {variable: Placeholder(name) for variable, name in columns.items()}

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.binding import Binder, UnknownElements, Value, Values
-from robbdd_tools.gherkin.words import condition_words, filled, word
+from robbdd_tools.gherkin.definition_words import meaning, predicate_words, whenever_words
+from robbdd_tools.gherkin.words import filled, word
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
@@ -25,14 +26,11 @@ from robbdd_tools.graph.acceptance_model import (
     every_clause,
 )
 from robbdd_tools.graph.clause_parts import count_of_parts, is_when_clause, part_numbers
-from robbdd_tools.monitor.compound import definition_of
-from robbdd_tools.monitor.predicate_definitions import Combination, Definition, Operand, Passed
 from robbdd_tools.protocol import clauses as stated
 from robbdd_tools.protocol.clauses import MEANWHILE
 from robbdd_tools.protocol.time_words import time_words
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import Predicate
     from robbdd_tools.catalog.registry import Catalog
 
 Scope = tuple[tuple[Iri, int], ...]
@@ -67,10 +65,14 @@ class Step:
 
 
 class StepWriter:
-    """Writes the steps of one model's clauses."""
+    """Writes the steps of one model's clauses.
 
-    def __init__(self, model: AcceptanceModel, catalog: Catalog) -> None:
+    If ``expanded`` is true, the definitions of named predicates replace their phrases.
+    """
+
+    def __init__(self, model: AcceptanceModel, catalog: Catalog, *, expanded: bool = False) -> None:
         self.model = model
+        self.expanded = expanded
         self._binder = Binder(model, catalog)
 
     def curie(self, iri: str) -> str:
@@ -116,7 +118,9 @@ class StepWriter:
         found = self._binder.defined_event(event, values)
         if found is None:
             return ""
-        conditions = " and ".join(filled(one.predicate.sentence, one.arguments) for one in found.conditions)
+        conditions = " and ".join(
+            predicate_words(one.predicate, one.arguments, expanded=self.expanded) for one in found.conditions
+        )
         lasting = f" for {found.seconds:g} seconds" if found.seconds else ""
         return f'event "{found.name}" occurs when {conditions}{lasting}'
 
@@ -135,7 +139,7 @@ class StepWriter:
         for fluent in stated_ones:
             conditions = [] if fluent.condition is None else fluent.condition.parts
             for one in (fluent, *conditions):
-                found |= dict.fromkeys(_meaning(one.predicate, one.arguments))
+                found |= dict.fromkeys(meaning(one.predicate, one.arguments, expanded=self.expanded))
         return tuple(found)
 
     def _known_steps(self, clauses: Collection[Clause], values: Values) -> Iterator[Step]:
@@ -145,7 +149,7 @@ class StepWriter:
 
     def sentence(self, clause: Clause, values: Values) -> str:
         """Return the sentence of one clause with the values of its variables."""
-        return sentence(self._binder.bind(clause, values))
+        return sentence(self._binder.bind(clause, values), expanded=self.expanded)
 
     def word(self, value: Value) -> str:
         """Return a value as written inside the quotes of a sentence."""
@@ -153,7 +157,8 @@ class StepWriter:
 
     def _step(self, role: str, clause: Clause, values: Values, scope: Scope, reach: Reach = None) -> Step:
         statement = self._binder.bind(clause, values)
-        return Step(role.capitalize(), sentence(statement), clause.iri, role, statement, (clause, values), scope, reach)
+        words = sentence(statement, expanded=self.expanded)
+        return Step(role.capitalize(), words, clause.iri, role, statement, (clause, values), scope, reach)
 
 
 def _reach(role: str, number: int, count: int) -> Reach:
@@ -168,38 +173,24 @@ def _uses_named(clause: Clause) -> bool:
     return any(one.named is not None for one in conditions) or (isinstance(clause, Fluent) and clause.named is not None)
 
 
-def _meaning(predicate: Predicate, arguments: Mapping[str, stated.Filler]) -> Iterator[str]:
-    definition = definition_of(predicate)
-    if definition is not None:
-        yield f"{filled(predicate.sentence, arguments)} means {_defined(definition, arguments, outer=True)}"
+def sentence(statement: stated.Statement, *, within: bool = False, expanded: bool = False) -> str:
+    """Return the sentence of a statement. ``within`` is true if the sentence is a part of a group.
 
-
-def _defined(definition: Definition, arguments: Mapping[str, stated.Filler], *, outer: bool = False) -> str:
-    """Return a definition in words, with its values. Named predicates in it are also replaced by their definitions."""
-    match definition:
-        case Operand(predicate, fillers):
-            own = {slot: arguments[one.parameter] if isinstance(one, Passed) else one for slot, one in fillers.items()}
-            inner = definition_of(predicate)
-            return filled(predicate.sentence, own) if inner is None else _defined(inner, own, outer=outer)
-        case Combination("not", (operand,)):
-            return f"not ( {_defined(operand, arguments, outer=True)} )"
-        case Combination(operator, operands):
-            joined = f" {operator} ".join(_defined(operand, arguments) for operand in operands)
-            return joined if outer else f"( {joined} )"
-
-
-def sentence(statement: stated.Statement, *, within: bool = False) -> str:
-    """Return the sentence of a statement. ``within`` is true if the sentence is a part of a group."""
+    If ``expanded`` is true, the definitions of named predicates replace their phrases.
+    """
     match statement:
         case stated.Fluent(predicate, arguments, time):
-            return f"{filled(predicate.sentence, arguments)}{condition_words(statement.condition)} {time_words(time)}"
+            words = predicate_words(predicate, arguments, expanded=expanded)
+            return f"{words}{whenever_words(statement.condition, expanded=expanded)} {time_words(time)}"
         case stated.Text(words, time):
-            shown = (text.in_group(words) if within else words) + condition_words(statement.condition)
+            shown = text.in_group(words) if within else words
+            shown += whenever_words(statement.condition, expanded=expanded)
             return shown if time is None else f"{shown} {time_words(time)}"
         case stated.Junction("not", operands):
-            return f"not ( {sentence(operands[0], within=True)} )"
+            return f"not ( {sentence(operands[0], within=True, expanded=expanded)} )"
         case stated.Junction(operator, operands):
-            return f"( {f' {operator} '.join(sentence(operand, within=True) for operand in operands)} )"
+            parts = (sentence(operand, within=True, expanded=expanded) for operand in operands)
+            return f"( {f' {operator} '.join(parts)} )"
         case stated.BehaviourCall(behaviour, arguments):
             return f"{MEANWHILE if statement.is_meanwhile else ''}{filled(behaviour.sentence, arguments)}"
         case stated.EventOccurrence(event):

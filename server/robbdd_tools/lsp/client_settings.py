@@ -33,12 +33,14 @@ class FolderSettings:
     - ``bhv``: maps implementations of behaviours to the catalog behaviours that runs execute instead.
     - ``scenex``: paths of ``.scenex`` files, relative to the folder, for scenarios without an execution.
     - ``rejudge``: whether each edit of a clause is judged on stored traces.
+    - ``expand``: whether features show the definitions of named predicates in place of their phrases.
     """
 
     shapes: tuple[str, ...] = ()
     bhv: Mapping[str, str] = field(default_factory=dict[str, str])
     scenex: tuple[str, ...] = ()
     rejudge: bool = True
+    expand: bool = False
 
     def read(self, section: object) -> tuple[FolderSettings, str | None]:
         """Read the section ``robbdd`` of a folder's settings. Return them with a description of the first error.
@@ -51,6 +53,9 @@ class FolderSettings:
         problem, rejudge = None, stated.get("rejudge", True)
         if not isinstance(rejudge, bool):
             problem, rejudge = "The setting 'robbdd.rejudge' is true or false.", self.rejudge
+        expand = (_entries(stated.get("gherkin")) or {}).get("expandPredicates", False)
+        if not isinstance(expand, bool):
+            problem, expand = "The setting 'robbdd.gherkin.expandPredicates' is true or false.", self.expand
         if scenex is None or not all(path.endswith(".scenex") for path in scenex):
             scenex = self.scenex
             problem = "The setting 'robbdd.run.scenex' is a list of .scenex files, such as [\"cell.scenex\"]."
@@ -63,6 +68,7 @@ class FolderSettings:
             self.bhv if bhv is None else bhv,
             scenex,
             rejudge,
+            expand,
         )
         return found, problem
 
@@ -122,6 +128,10 @@ class Settings:
     def rejudges(self, uri: str) -> bool:
         """Return whether edits of a document are judged on stored traces."""
         return self._of(uri)[1].rejudge
+
+    def expands(self, uri: str) -> bool:
+        """Return whether the features of a document show the definitions of named predicates."""
+        return self._of(uri)[1].expand
 
     def shapes(self, uri: str) -> EditorShapes:
         """Return the file patterns of the shapes that the editor adds for a document.

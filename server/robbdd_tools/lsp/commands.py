@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
@@ -135,6 +136,7 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
         return []
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
+        plan = replace(plan, expanded=ls.settings.expands(uri))
         written = await asyncio.to_thread(write_features, plan, path.parent / "features")
     except (RobbddError, OSError) as error:
         ls.warn(reason(error))

@@ -30,15 +30,23 @@ class Previews:
         self._kept = LastValid()
         self.forget = self._kept.forget
 
-    def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
-        """Return the answer to a request. For a text with errors, this is the last preview without errors."""
+    def show(
+        self, snapshot: Snapshot, convert: Converter, asked: Parameters, *, expanded: bool = False
+    ) -> dict[str, Any]:
+        """Return the answer to a request. For a text with errors, this is the last preview without errors.
+
+        If ``expanded`` is true, the definitions of named predicates replace their phrases.
+        """
         from robbdd_tools.gherkin.preview import MAX_SHOWN, preview
 
         uri = asked.text("uri")
         scenario = asked.optional_text("scenario")
         most = asked.optional_number("most") or MAX_SHOWN
         made, problem = self._kept.of(
-            snapshot, uri, scenario, lambda: _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
+            snapshot,
+            uri,
+            scenario,
+            lambda: _answer(snapshot, convert, preview(snapshot, uri, scenario, most, expanded=expanded)),
         )
         made = made or NOTHING
         return {"uri": uri, "problem": problem, **made, "text": _headed(made, _remark(made, problem))}
@@ -51,7 +59,9 @@ def register_preview(server: RobbddServer) -> None:
 
     @server.feature(PREVIEW)
     async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
-        return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, Parameters(params)))
+        asked = Parameters(params)
+        expanded = ls.settings.expands(asked.text("uri"))
+        return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, asked, expanded=expanded))
 
 
 def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, Any]:

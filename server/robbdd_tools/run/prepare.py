@@ -172,7 +172,7 @@ class _Part:
         """Yield the scenarios to execute. No features are written, so the scenarios name none."""
         plan = self.plan
         for story in plan.stories:
-            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):
+            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet, expanded=plan.expanded):
                 if piece.scenario is not None:
                     yield from self._chosen("", story, piece.scenario)
 
