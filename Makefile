@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench study docs playground package release publish clean
+.PHONY: demo sample-log test setup lint test-python test-client test-editors fuzz arms nightly mutants bench study falsification docs playground package release publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -60,6 +60,11 @@ study: $(READY)
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,travel --store build/study
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,speed --store build/study
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,friction --store build/study
+
+# Executions up to the first failure, on three rare failures, by each method of `robbdd falsify`: docs/falsify.md
+falsification: $(READY)
+	rm -f tests/bench/falsification/recorded.csv
+	nice -n 15 $(BIN)/python -m tests.bench.falsification
 
 # A bag of ROS 2 to try `robbdd judge LOG` with: build/sample-log (docs/logs.md)
 sample-log: $(READY)
