@@ -39,6 +39,8 @@ THINGS = 1
 """Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
 COLUMN = "robbdd-column"
 """Name of the body of the pedestal, which is added to the bodies of the robot's file."""
+LOW = 1e-3
+"""An arm whose base is less than twice this high (m) above the floor stands on the floor."""
 TORSION, ROLLING = 0.005, 0.0005
 """Torsional and rolling friction of objects, m; without rolling friction, a ball never comes to rest."""
 
@@ -245,12 +247,15 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
         _add_column(spec, name, base, THINGS | robots)
         pairs = [*apart, *((COLUMN, body) for body in beside_base)]
     for one, other in pairs:
-        spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
+        if spec.body(f"{name}/{one}") is not None:
+            spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
 
 
 def _add_column(spec: Any, name: str, base: Pose, touches: int) -> None:
     """Add the pedestal of a fixed arm; ``touches`` are the collision groups (bits) that it collides with."""
     half = (base.position[2] - FLOOR) / 2
+    if half < LOW:
+        return
     x, y, z = base.position
     foot = spec.worldbody.add_body(name=f"{name}/{COLUMN}", pos=[x, y, z - half])
     column = foot.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0])

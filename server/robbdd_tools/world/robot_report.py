@@ -15,6 +15,7 @@ from robbdd_tools.catalog.executable import ArmModel
 from robbdd_tools.world.composition import COLUMN
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import path_of, velocity_limits
@@ -49,6 +50,7 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         unusual = ", ".join(impossible_inertias(path_of(source))) if source.kind in ("file", "ros") else ""
         if unusual:
             yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
+    yield from changes_of(robot.mjcf)
     ghosts = list(_without_contacts(model, name))
     if ghosts:
         yield f"links without collision shapes, which pass through everything: {', '.join(ghosts)}"

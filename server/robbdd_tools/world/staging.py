@@ -20,7 +20,7 @@ from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name, shape_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
-from robbdd_tools.world.tilted_base import upright_part
+from robbdd_tools.world.tilted_base import on_the_floor, upright_part
 from robbdd_tools.world.tilted_robots import tilted
 
 if TYPE_CHECKING:
@@ -190,7 +190,7 @@ class Staging:
             if found is None:
                 raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
             return tilted(found, tilt, chosen)
-        found = robot_from(chosen, element, tilt)
+        found = robot_from(chosen, element, tilt or (None if placed is None else on_the_floor(placed)))
         if not any(element in (friction.first, friction.second) for friction in self.frictions):
             refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
         return found

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 Quaternion = tuple[float, float, float, float]
 """w, x, y, z."""
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
+LOW = -0.3
+"""A base below this height (m, world frame) stands on the floor: its arm works above it, at the height of tables."""
 LYING = 0.1
 """The direction of a unit axis is known if its horizontal part is longer than this."""
 
@@ -48,6 +50,11 @@ def upright_part(pose: Pose) -> tuple[Pose, Tilt | None]:
     mujoco.mju_mulQuat(tilt, about_vertical(-yaw), np.array(pose.rotation))
     w, i, j, k = (round(float(part), 9) for part in tilt)
     return replace(pose, yaw=yaw, rotation=()), Tilt((w, i, j, k), round(pose.position[2], 2))
+
+
+def on_the_floor(pose: Pose) -> Tilt | None:
+    """Return the height of an upright base that is far below the tables, without a tilt; ``None`` for others."""
+    return None if pose.position[2] > LOW else Tilt(UPRIGHT, round(pose.position[2], 2))
 
 
 def about_vertical(yaw: float) -> FloatArray:

@@ -87,6 +87,18 @@ def impossible_inertias(path: Path) -> Iterator[str]:
             yield link.get("name", "")
 
 
+def massless_links(path: Path) -> Iterator[str]:
+    """Yield the links of a URDF file without a mass. The engine refuses them if a joint moves them."""
+    try:
+        root = ElementTree.fromstring(source_xml(path))
+    except ElementTree.ParseError:
+        return
+    for link in root.iter("link") if root.tag == "robot" else ():
+        mass = link.find("inertial/mass")
+        if mass is None or float(mass.get("value", 0)) == 0.0:
+            yield link.get("name", "")
+
+
 def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element) -> None:
     """Replace a mesh's address by its path, or remove an unusable visual shape. Raises ``ValueError``."""
     mesh = shape.find("geometry/mesh")

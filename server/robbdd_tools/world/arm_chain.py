@@ -1,0 +1,118 @@
+"""Find the chain of bodies from the base of an arm's file to its hand, and the joints that belong to neither."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.srdf_semantics import path_to
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import ArmModel, ModelSource
+
+TO_HAND = 3
+"""An arm has at least this many joints above its hand; a finger of several links has fewer above a branch."""
+BARE = 6
+"""A branch without fingers is an arm from this many joints on: fingers have at most five."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """The bodies from the base to the palm, and the joints of branches beside them: a head, wheels, another arm."""
+
+    bodies: list[Any]
+    beside: tuple[str, ...]
+
+
+def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
+    """Return the bodies from the base to the palm, which carries all gripping faces. Raises ``SceneError``.
+
+    Without stated faces, the palm is the first body with several jointed branches of which none leads to a hand, or
+    else the last body, but no body beyond the stated tool. Of several hands, the one that carries the tool is chosen.
+    """
+    tool = path_to(tool_body(spec, source, arm.tool)) if arm.tool else []
+    carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
+    paths = [[str(body.name) for body in path_to(one)] for one in carriers if one is not None]
+    named = [str(one.name) for one in tool] or (paths[0] if paths else [])
+    bodies, beside = _descent(spec, source, named)
+    if len(paths) > 1 and len(paths) == len(arm.pads):
+        common = [name for name in paths[0] if all(name in path for path in paths)]
+        if common:
+            return Chain(path_to(spec.body(common[-1])), beside)
+    body = bodies[-1] if bodies else spec.worldbody
+    branches = [child for child in body.bodies if _moves(child)]
+    suctions = [one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_BODY]
+    if not branches and suctions:
+        body = spec.body(str(suctions[0].target))
+    if not branches and len(carriers) == 1 and carriers[0] is not None:
+        body = carriers[0]
+    if body.name == "world":
+        text = f"{source.name} is not one arm: " + (
+            f"{len(branches)} chains of joints begin at its base" if branches else "it has no joints"
+        )
+        raise SceneError(text, origin=source.origin)
+    common = {one.name for one in tool}
+    return Chain([one for one in path_to(body) if not tool or one.name in common], beside)
+
+
+def _descent(spec: Any, source: ModelSource, named: list[str]) -> tuple[list[Any], tuple[str, ...]]:
+    """Return the bodies from the base to the first one from which no single branch leads on, and the joints beside.
+
+    ``named`` are the bodies from the base to a stated part of the hand.
+    """
+    body, found, beside = spec.worldbody, list[Any](), list[str]()
+    while True:
+        branches = [child for child in body.bodies if _moves(child)]
+        onward = branches if len(branches) == 1 else [one for one in branches if _hand_of(one) is not None]
+        chosen = [one for one in onward if one.name in named] or onward
+        if len(chosen) > 1:
+            hands = ", ".join(f"'{_hand_of(one)}'" for one in chosen)
+            raise SceneError(
+                f"{source.name} has {len(chosen)} arms, with the hands {hands}: name a body or a site of one hand, "
+                'tool: "…"; the joints of the others are then fixed',
+                origin=source.origin,
+            )
+        if not chosen:
+            return found, tuple(beside)
+        beside += [str(joint.name) for one in branches if one.name != chosen[0].name for joint in _joints_in(one)]
+        body = chosen[0]
+        found.append(body)
+
+
+def _hand_of(branch: Any) -> str | None:
+    """Return the name of the hand to which a branch leads; ``None`` for a finger, a wheel or a head."""
+    body, joints = branch, len(branch.joints)
+    while True:
+        branches = [child for child in body.bodies if _moves(child)]
+        if len(branches) != 1:
+            break
+        body = branches[0]
+        joints += len(body.joints)
+    below = [hand for one in branches if (hand := _hand_of(one)) is not None]
+    if below:
+        return below[0]
+    return str(body.name) if joints >= (TO_HAND if branches else BARE) else None
+
+
+def tool_body(spec: Any, source: ModelSource, name: str) -> Any:
+    """Return the body of the stated tool. Raises ``SceneError``."""
+    site = spec.site(name)
+    body = site.parent if site is not None else spec.body(name)
+    if body is None:
+        known = f"it has the sites {_names(spec.sites)} and the bodies {_names(spec.bodies[1:])}"
+        raise SceneError(f"{source.name} has no site or body '{name}' for the tool; {known}", origin=source.origin)
+    return body
+
+
+def _names(things: Any) -> str:
+    return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
+
+
+def _moves(body: Any) -> bool:
+    return bool(body.joints) or any(_moves(child) for child in body.bodies)
+
+
+def _joints_in(body: Any) -> list[Any]:
+    return [*body.joints, *(joint for one in body.find_all("body") for joint in one.joints)]
