@@ -2,6 +2,7 @@
 
 import gc
 import os
+import tempfile
 from collections.abc import Iterator
 
 import pytest
@@ -9,6 +10,9 @@ from hypothesis import HealthCheck, Phase, settings
 
 from fork_kit import CAN_FORK, INTERPRETERS, fork_server
 from robbdd_tools.base.memory import collect_rarely
+
+# Tests neither read nor fill the user's cache.
+os.environ.setdefault("ROBBDD_CACHE", tempfile.mkdtemp(prefix="robbdd-cache-"))
 
 # Tests share the cores with one another: how long an example takes says nothing about the code. In continuous
 # integration the examples are the same in every run; elsewhere new ones are tried.

@@ -164,6 +164,7 @@ SAME_ROLE = {
             "instances",
             "named_predicates",
             "requirements",
+            "robot_logs",
             "scenes",
             "stories",
             "variations",

@@ -255,17 +255,19 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   declaration(DECLARE, "entity.name.function.policy", "obs policy"),
   declaration(DECLARE, "entity.name.function.provider", "obs provider"),
   declaration(DECLARE, "entity.name.function.observation", "observation"),
+  declaration(DECLARE, "entity.name.function.log", "robot log"),
   labels(
     PROPERTY,
     ...["bhv action", "answer within", "ros topic", "type", "update-rate", "provider", "horizon", "observations", "evaluator"],
     ...["less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
     ...["variant", "scene inst", "bhv", "policies", "repeat", "seed", "timeout", "noise", "latency", "module", "attr"],
+    ...["path", "frames", "base frames", "world frame", "joint topics", "events", "grips", "annotations", "uncertainty", "log"],
   ),
   phrases("storage.type.variable", "set var", "var"),
   phrases(`${PHRASE}.evaluator`, "linear distance", "angular distance"),
   phrases(`${PHRASE}.provider`, "ros simulation entity state", "simulation ground truth"),
-  phrases(WORD, "observes", "for", "and", "py", "catalog", "process", "endpoint", "obj", "ws", "agn"),
-  phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation"),
+  phrases(WORD, "observes", "for", "and", "py", "catalog", "process", "endpoint", "obj", "ws", "agn", "where", "when", "while", "of", "to"),
+  phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation", "robot log"),
 ]);
 
 const study = grammar("RobBDD Study", "source.robbdd.study", [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from kit import MODEL, SCENE, fixture
@@ -11,6 +13,7 @@ from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+from robbdd_tools.protocol.recorded_log import RecordedLog
 
 X, T, ENV = "https://example.org/x/", "https://example.org/t/", "https://example.org/env/"
 BDDX = """import "main.bdd"
@@ -35,9 +38,22 @@ obs policy (ns=x) coded for <fetch.on-bench> {
     observations: { <part-pose> }
     evaluator: py { module: my.rules, attr: near }
 }
+robot log (ns=x) monday {
+    path: "bags/monday"
+    where <fetch.part> = <parts.bolt> and <fetch.robot> = <arms.panda>
+    frames: { "camera/object_7" to obj <parts.bolt>, "tool0" to agn <arms.panda> }
+    base frames: { "base_link" to agn <arms.panda> }
+    world frame: "odom"
+    joint topics: { "/arm/joint_states" to agn <arms.panda> }
+    events: { <start> when "/task becomes 2" }
+    grips: { <arms.panda> while "/vacuum" }
+    annotations: "monday.csv"
+    uncertainty: { 3 mm, 2 deg, 0.5 cm of obj <parts.bolt> }
+}
 Scenario Exec (ns=x) second {
     variant: <fetching.bench-to-tray>  scene inst: <bench_mjc>  bhv: <own>
     policies: { <told>, <near>, <coded> }  repeat: 3  seed: 42  timeout: 60 seconds
+    log: <monday>
 }
 Scenario Exec (ns=x) first { variant: <fetching.bench-to-tray>  scene inst: <bench_mjc>  bhv: <own> }
 """
@@ -61,6 +77,21 @@ POLICIES = (
     Policy(X + "coded", CLAUSE, Rule("python", "my.rules:near"), None, (PART,)),
 )
 
+PANDA, BOLT = ENV + "panda", ENV + "bolt"
+MONDAY = RecordedLog(
+    X + "monday",
+    "bags/monday",
+    ((T + "var-part", BOLT), (T + "var-robot", PANDA)),
+    (("camera/object_7", BOLT), ("tool0", PANDA)),
+    (("base_link", PANDA),),
+    "odom",
+    (("/arm/joint_states", PANDA),),
+    ((T + "start", "/task becomes 2"),),
+    ((PANDA, "/vacuum"),),
+    "monday.csv",
+    (("others", 0.003), ("angle", math.radians(2)), (BOLT, 0.005)),
+)
+
 
 def executions(text: str = BDDX, form: str = "ttl") -> tuple[Execution, ...]:
     case = fixture(f"//- run.bddx\n{text}\n//- main.bdd\n{MODEL}\n//- lab.scene\n{SCENE}\n//- bench.scenex\n{SCENEX}")
@@ -75,7 +106,7 @@ def test_executions_come_back_in_written_order(form: str) -> None:
     variant = second.variant
     assert variant == T + "bench-to-tray"
     scene = SceneInstance("https://example.org/s/bench_mjc", scene="https://example.org/env/bench_scene")
-    assert second == Execution(second.iri, variant, own, scene, POLICIES, 3, 42, 60.0)
+    assert second == Execution(second.iri, variant, own, scene, POLICIES, 3, 42, 60.0, MONDAY)
     assert first == Execution(first.iri, variant, own, scene)
     assert (second.iri, first.iri) == (X + "second", X + "first")
 

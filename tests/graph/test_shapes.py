@@ -65,6 +65,8 @@ DAMAGE: dict[str, list[str]] = {
     "event-type-after": ["- t:taken time:after-event", "+ t:taken time:after-event t:task"],
     "event-type-before": ["- t:seen time:before-event", "+ t:seen time:before-event t:task"],
     "execution-behaviour": [*EXECUTION, "- t:server rdf:type"],
+    "execution-log-one": [*EXECUTION, "+ t:run rbw:log t:server"],
+    "robot-log-path": [*EXECUTION, "+ t:monday a rbw:RobotLog"],
     "execution-policies": [*EXECUTION, "+ t:watch bdd:of-clause t:seen"],
     "execution-variant": [*EXECUTION, "+ t:run bdd:of-variant o:product"],
     "fluent-predicate": ["+ t:at a bdd:CanReach"],

@@ -12,7 +12,8 @@ from logs.bags import pose, text, transform, truth, write
 from logs.test_open_log import foxglove
 from robbdd_tools.logs.growing_mcap import GrowingMcap, is_cut
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
-from robbdd_tools.logs.open_log import is_log, read_log
+from robbdd_tools.logs.log_files import is_log
+from robbdd_tools.logs.open_log import read_log
 from robbdd_tools.protocol.event_signals import read_event_signal
 
 MESSAGES = [

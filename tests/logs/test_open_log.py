@@ -12,7 +12,8 @@ from mcap.writer import Writer
 
 from logs.bags import Message, pose, text, transform, truth, write
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
-from robbdd_tools.logs.open_log import is_log, read_log
+from robbdd_tools.logs.log_files import is_log
+from robbdd_tools.logs.open_log import read_log
 
 DRIVE = [
     transform("bench", (1, 0, 0.5), stamp=100.0, topic="/tf_static"),

@@ -28,11 +28,11 @@ from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.coordination import END, emitter
 from robbdd_tools.judging.decisions import decide, occurred
 from robbdd_tools.judging.log_executions import check_one_execution
-from robbdd_tools.judging.log_names import check_events
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, iteration_of_event, statement_of
 from robbdd_tools.logs.log_contents import LogContents
+from robbdd_tools.logs.log_names import check_events
 from robbdd_tools.logs.log_period import cut
 from robbdd_tools.logs.log_table import read_events
 from robbdd_tools.logs.open_log import read_log

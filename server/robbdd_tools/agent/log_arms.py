@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.judging.joint_names import JointsProblem, joint_words, joints_of, stated_joints, topic_of
-from robbdd_tools.judging.log_names import NoElement, elements_of
 from robbdd_tools.logs.joint_tracks import JointTrack, positions_at
+from robbdd_tools.logs.log_names import NoElement, elements_of
 from robbdd_tools.world.arm_kinematics import Arm, arm_of
 from robbdd_tools.world.engine import mujoco
 

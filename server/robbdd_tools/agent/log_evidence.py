@@ -17,8 +17,8 @@ from robbdd_tools.catalog.coordination import DEFINED
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
 from robbdd_tools.judging.defined_events import with_defined_events
-from robbdd_tools.judging.log_names import elements_of, occurrences_of
 from robbdd_tools.judging.scenario_clauses import iterations_of_events, statement_of
+from robbdd_tools.logs.log_names import elements_of, occurrences_of
 from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.clauses import EventOccurrence

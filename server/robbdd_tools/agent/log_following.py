@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.logs.growing_mcap import GrowingMcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
-from robbdd_tools.logs.open_log import bag_files
+from robbdd_tools.logs.log_files import bag_files
 from robbdd_tools.monitor.time import After, Before, closing_time, occurrences
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, leaves_of
 from robbdd_tools.protocol.event_signals import read_event_signal

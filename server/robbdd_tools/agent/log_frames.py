@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.base_frames import BASE_FRAMES
-from robbdd_tools.judging.log_names import (
+from robbdd_tools.logs.log_contents import Track
+from robbdd_tools.logs.log_names import (
     FramesProblem,
     NoElement,
     base_frame_of,
@@ -19,7 +20,6 @@ from robbdd_tools.judging.log_names import (
     stated_frames,
     tool_frame_of,
 )
-from robbdd_tools.logs.log_contents import Track
 from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of, rotated
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.staging import Staging

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.judging.log_names import elements_of, local_name
 from robbdd_tools.logs.joint_tracks import JointTrack, positions_at
+from robbdd_tools.logs.log_names import elements_of, local_name
 from robbdd_tools.protocol.grip_signals import EFFORT, GripSignal, NoGripSignal, read_grip_signal
 from robbdd_tools.world.extent import outline_of
 

@@ -67,6 +67,8 @@ SCENE_SECONDS = Limit("scene-seconds", 30, "seconds")
 """Maximum time to set up the scene instances of a file while it is checked. The examples take a second."""
 SCENE_MEMORY = Limit("scene-memory", 2048 * MIB, "bytes")
 """Largest address space of the process that sets them up, if the system can limit it. The examples take 250 MiB."""
+LOG_SECONDS = Limit("log-seconds", 60, "seconds")
+"""Maximum time to read the names in a log while a model is edited. An hour of eight transforms at 100 Hz takes 20 s."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
@@ -84,6 +86,7 @@ LIMITS: Mapping[str, Limit] = {
         TEMPLATE_MEMORY,
         SCENE_SECONDS,
         SCENE_MEMORY,
+        LOG_SECONDS,
     )
 }
 

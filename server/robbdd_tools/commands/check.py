@@ -11,6 +11,7 @@ from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_document, print_line
 from robbdd_tools.syntax.study_content import STUDY
+from robbdd_tools.workbench.log_findings import all_log_findings
 from robbdd_tools.workbench.model import load_all
 from robbdd_tools.workbench.named_files import NotAModel, named_files
 
@@ -26,7 +27,7 @@ def check(paths: Sequence[Path], as_json: bool) -> int:
     except NotAModel as error:
         return fail(str(error))
     if model is not None:
-        found += [*model.diagnostics, *model.scene_findings]
+        found += [*model.diagnostics, *model.scene_findings, *all_log_findings(model)]
     # The errors of a model are also found where a study imports it.
     found = list(dict.fromkeys(found))
     files = () if model is None else model.files

@@ -84,8 +84,9 @@ def _add_replay(commands: AddsCommands) -> argparse.ArgumentParser:
 
 def _add_judge(commands: AddsCommands) -> argparse.ArgumentParser:
     judge = commands.add_parser("judge", help="judge a stored run, or the log of a real robot, without simulating")
-    judge.add_argument("run", metavar="RUN|LOG", help=f"{RUN}; or a log: a ROS bag, an MCAP file, a CSV table")
-    judge.add_argument("path", metavar="FILE|DIR", type=Path)
+    text = f"{RUN}; or a log: a ROS bag, an MCAP file, a CSV table; without one, the logs that the executions name"
+    judge.add_argument("run", metavar="RUN|LOG", help=text)
+    judge.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?")
     judge.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*", help="as for run")
     judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     allow_log(judge)

@@ -15,12 +15,14 @@ from robbdd_tools.commands.execute import follow
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.commands.runs import print_unfinished
-from robbdd_tools.logs.open_log import is_log
+from robbdd_tools.logs.log_files import is_log
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.judging import Judgement
 from robbdd_tools.workbench.log_judging import LogJudgement, LogNames
 from robbdd_tools.workbench.model import load_all
+from robbdd_tools.workbench.named_logs import named_logs, names_for
 from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.stored import store_at
 
@@ -32,7 +34,8 @@ if TYPE_CHECKING:
 class JudgeOptions:
     """The options of ``robbdd judge``.
 
-    - ``run``: the stored run, given as a number, as ``latest`` or as a folder; or the path of a log.
+    - ``run``: the stored run, given as a number, as ``latest`` or as a folder; or the path of a log. Empty for the logs
+      that the executions of the models name.
     - ``paths``: the edited models.
     - ``store``: the store of runs.
     - ``report``: the output file.
@@ -52,7 +55,7 @@ class JudgeOptions:
 
 def judge(options: JudgeOptions) -> int:
     """Judge by a model's clauses and print the verdicts. Return the same exit code as ``robbdd run``."""
-    work = _judge_log if is_log(Path(options.run)) else _judge
+    work = _judge_named if not options.run else _judge_log if is_log(Path(options.run)) else _judge
     return report_problems(Outputs(report=options.report), viewer=False, work=lambda: work(options))
 
 
@@ -69,10 +72,32 @@ def _judge(options: JudgeOptions) -> int:
 
 
 def _judge_log(options: JudgeOptions) -> int:
-    plan = Plan.of(load_all(options.paths), options.selection)
+    model = load_all(options.paths)
+    plan = Plan.of(model, options.selection)
+    specs = plan.scenarios
+    names = names_for(model, specs[0], options.names) if len(specs) == 1 else options.names
+    return _judge_one(options, plan, Path(options.run), names)
+
+
+def _judge_named(options: JudgeOptions) -> int:
+    """Judge each log that an execution names. Return the exit code of the worst."""
+    model = load_all(options.paths)
+    logs = named_logs(model, options.selection, options.names)
+    if options.report is not None and len(logs) > 1:
+        names = ", ".join(plain_name(one.execution) for one in logs)
+        return fail(f"--json is for one log, but several executions name one: choose with --scenario, of {names}")
+    worst = OK
+    for one in logs:
+        print_note(f"{plain_name(one.execution)}: {one.path}")
+        code = _judge_one(options, Plan.of(model, one.selection), one.path, one.names)
+        worst = max(worst, code)
+    return worst
+
+
+def _judge_one(options: JudgeOptions, plan: Plan, log: Path, names: LogNames) -> int:
     keeping = Keeping(store=options.store, keep=options.keep)
-    with LogJudgement(plan, Path(options.run), options.names, keeping) as judgement:
-        ended_by = follow(judgement, made="recorded, judged in", live=options.names.quiet is not None)
+    with LogJudgement(plan, log, names, keeping) as judgement:
+        ended_by = follow(judgement, made="recorded, judged in", live=names.quiet is not None)
         for remark in judgement.remarks:
             print_note(remark)
         if judgement.place.kept:

@@ -82,8 +82,9 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
         options.follow,
     )
     selection = Selection(options.scenario or (), options.where)
-    paths = (options.path, *options.more)
-    return JudgeOptions(options.run, paths, options.store, options.json, selection, names, keep=not options.no_store)
+    # A single argument is a model, whose executions name logs.
+    run, paths = (options.run, (options.path, *options.more)) if options.path else ("", (Path(options.run),))
+    return JudgeOptions(run, paths, options.store, options.json, selection, names, keep=not options.no_store)
 
 
 def _pair(text: str) -> tuple[str, str]:

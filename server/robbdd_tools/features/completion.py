@@ -12,6 +12,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import Cursor, cursor_at
 from robbdd_tools.features.expected_words import Place, is_accepted, keyword_phrases, place_after
 from robbdd_tools.features.literals import literal_choices, unit_choices
+from robbdd_tools.features.log_help import log_choices
 from robbdd_tools.features.model_parts_help import part_choices
 from robbdd_tools.features.name_completion import Completion, Names
 from robbdd_tools.features.part_snippets import PART_SNIPPETS
@@ -126,6 +127,12 @@ def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion
         start = offset - len(typed)
         whole = Span(start, offset if rest is None else rest.end())
         yield Completion(name, kind, facts, name, Span(start, offset), whole, origin=(uri, ""))
+    closed = re.compile(r"[^\"'\n]*").match(text, offset)
+    for name, kind, facts, typed in log_choices(uri, text, offset):
+        start = offset - len(typed)
+        # A name of a signal is followed by its condition.
+        end = offset if closed is None or kind in ("field", "joint") else closed.end()
+        yield Completion(name, kind, facts, name, Span(start, offset), Span(start, end), origin=(uri, ""))
     for name, kind, typed, target in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
         start = offset - len(typed)
         whole = Span(start, offset if rest is None else rest.end())

@@ -70,6 +70,7 @@ _QUOTED = {
     SymbolKind.PROVIDER,
     SymbolKind.OBSERVATION,
     SymbolKind.POLICY,
+    SymbolKind.ROBOT_LOG,
     SymbolKind.EXECUTION,
 }
 """Kinds that are described by their source text."""

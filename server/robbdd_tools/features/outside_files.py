@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
@@ -11,13 +13,12 @@ from robbdd_tools.base.python_modules import find_module, source_file
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.model_file import model_path
 from robbdd_tools.checks.python_source import code_names
+from robbdd_tools.logs.log_files import METADATA, bag_files
 from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
 
@@ -50,8 +51,19 @@ def _named(declaration: Declaration, folder: Path) -> Iterator[Path]:
         elif spec is None:
             yield folder.joinpath(*source.module.text.split(".")).with_suffix(".py")
     root = declaration.tree
+    if isinstance(root, tree.RobotLog):
+        yield from _of_log(root, folder)
     for node in walk(root) if isinstance(root, tree.SceneInstance) else ():
         path = model_path(folder, node.source) if isinstance(node, tree.Model) and node.kind != "usd" else None
         if path is not None:
             yield path
             yield from model_parts(path).files if path.is_file() else ()
+
+
+def _of_log(log: tree.RobotLog, folder: Path) -> Iterator[Path]:
+    """Yield the files of a log that may change: the file, or those of a folder, and the table of events."""
+    for written in (log.path, log.annotations):
+        with suppress(RuntimeError, OSError):  # The home folder of an unknown user; a folder without permission.
+            path = None if written is None else folder / Path(written.value).expanduser()
+            if path is not None:
+                yield from (path / METADATA, *bag_files(path)) if path.is_dir() else (path,)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.model_name import part_names
 from robbdd_tools.features.catalog_source import describe_catalog_entry, entry_at, entry_definition
+from robbdd_tools.features.log_help import log_name_at
 from robbdd_tools.features.model_parts_help import (
     describe_file,
     describe_part,
@@ -55,6 +56,10 @@ def outside_name_at(snapshot: Snapshot, uri: str, offset: int) -> OutsideName | 
     model = file_at(snapshot, uri, offset)
     if model is not None:
         return OutsideName(model[0], partial(describe_file, model[1]), partial(file_definition, model[1]))
+    in_log = log_name_at(snapshot, uri, offset)
+    if in_log is not None:
+        span, text = in_log
+        return OutsideName(span, lambda: text, lambda: None)
     entry = entry_at(snapshot, uri, offset)
     if entry is not None:
         return OutsideName(entry[0], partial(describe_catalog_entry, entry[1]), partial(entry_definition, entry[1]))

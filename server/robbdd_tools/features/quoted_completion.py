@@ -10,12 +10,15 @@ from urllib.parse import quote, urljoin
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.model_paths import package_share, packages
 from robbdd_tools.checks.catalog_entry import known_entries
+from robbdd_tools.logs.log_files import SUFFIXES
 from robbdd_tools.names.imports import importable_extensions
 from robbdd_tools.names.index import language_of
 
 _IMPORT = re.compile(r"import\s*[\"']([^\"']*)\Z")
 _MODEL = re.compile(r"\bsys\s+path\s*=\s*[\"']([^\"']*)\Z")
 _ENTRY = re.compile(r"\bcatalog\s*[\"']([^\"']*)\Z")
+_LOG = re.compile(r"\bpath\s*:\s*[\"']([^\"']*)\Z")
+_ANNOTATIONS = re.compile(r"\bannotations\s*:\s*[\"']([^\"']*)\Z")
 _PACKAGE = re.compile(r"\bros\s+pkg\s*=\s*[\"']([^\"']*)\Z")
 _PACKAGED = re.compile(r"\bros\s+pkg\s*=\s*[\"']([^\"']*)[\"']\s*,\s*path\s*=\s*[\"']([^\"']*)\Z")
 MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
@@ -47,6 +50,9 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
         return
     wanted = frozenset(f".{kind}" for kind in importable_extensions(language_of(uri)))
     match = _IMPORT.search(line)
+    for form, endings in ((_LOG, SUFFIXES), (_ANNOTATIONS, (".csv",))):
+        if match is None and (match := form.search(line)):
+            wanted = frozenset(endings)
     if match is None:
         match, wanted = _MODEL.search(line), frozenset[str]().union(*MODEL_ENDINGS.values())
     if match is not None:

@@ -15,6 +15,7 @@ from robbdd_tools.graph.requirement import Requirement
 from robbdd_tools.graph.shown_properties import Column
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
+from robbdd_tools.protocol.recorded_log import RecordedLog
 
 
 class Iri(str):
@@ -292,9 +293,8 @@ class Execution:
 
     - ``implementation``: executes the behaviours of the variant in ``scene``.
     - ``policies``: judge clauses of the variant instead of the predicates of these clauses.
-    - ``repeat``: the number of repetitions.
-    - ``seed``: determines all randomness; ``None`` takes the seed of the run.
-    - ``timeout``: the limit in s of simulated time.
+    - ``repeat``, ``seed``: the number of repetitions; determines all randomness (``None``: the seed of the run).
+    - ``timeout``, ``log``: the limit in s of simulated time; the recording of a real robot that executed the variant.
     """
 
     iri: Iri
@@ -305,6 +305,7 @@ class Execution:
     repeat: int = 1
     seed: int | None = None
     timeout: float | None = None
+    log: RecordedLog | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -312,8 +313,7 @@ class AcceptanceModel:
     """All acceptance criteria of a graph.
 
     - ``kinds``: maps each element to its kind (``object``, ``workspace`` or ``agent``).
-    - ``sets``: the constant sets.
-    - ``prefixes``: maps each prefix to its namespace, for writing CURIEs.
+    - ``sets``: the constant sets. ``prefixes``: maps each prefix to its namespace, for writing CURIEs.
     - ``executions``: the executions in written order.
     - ``correct_places``: maps an object to the workspaces that are stated to be correct for it.
     - ``verifies``: the requirements that a story, a variant, a template or a clause verifies.

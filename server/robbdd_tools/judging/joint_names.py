@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robbdd_tools.judging.log_names import local_name, plain_word
+from robbdd_tools.logs.log_names import local_name, plain_word
 
 if TYPE_CHECKING:
     from robbdd_tools.logs.joint_tracks import JointTracks

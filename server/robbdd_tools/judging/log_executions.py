@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.catalog.coordination import each_emitter
-from robbdd_tools.judging.log_names import occurrences_of
 from robbdd_tools.judging.scenario_clauses import iteration_of, statement_of
+from robbdd_tools.logs.log_names import occurrences_of
 from robbdd_tools.protocol.clauses import BehaviourCall
 
 if TYPE_CHECKING:

@@ -9,26 +9,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.logs.foxglove_mcap import encodings, is_uniform, read_foxglove
 from robbdd_tools.logs.growing_mcap import is_cut, read_mcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
+from robbdd_tools.logs.log_files import METADATA, SUFFIXES, bag_files
 from robbdd_tools.logs.log_table import read_table
 from robbdd_tools.logs.ros_bag import read_ros_bag
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.event_signals import EventSignal
-
-METADATA = "metadata.yaml"
-SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
-
-
-def is_log(path: Path) -> bool:
-    """Return whether the name of a path is that of a log: a bag, a file of a bag, or a table."""
-    if path.is_dir():
-        return (path / METADATA).is_file() or bool(bag_files(path))
-    return path.suffix.lower() in SUFFIXES and path.is_file()
-
-
-def bag_files(folder: Path) -> list[Path]:
-    """Return the files of a rosbag2 folder in the order of their names."""
-    return sorted(one for one in folder.iterdir() if one.suffix.lower() in (".db3", ".mcap") and one.is_file())
 
 
 def read_log(

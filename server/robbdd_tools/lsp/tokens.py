@@ -73,6 +73,7 @@ APPEARANCES: Mapping[str, tuple[str, ...]] = {
     SymbolKind.PROVIDER: (_TYPES.Function.value, "observation"),
     SymbolKind.OBSERVATION: (_TYPES.Property.value, "observation"),
     SymbolKind.POLICY: (_TYPES.Function.value, "policy"),
+    SymbolKind.ROBOT_LOG: (_TYPES.Property.value, "observation"),
     SymbolKind.EXECUTION: (_TYPES.Class.value, "execution"),
 }
 """Concept → its token type, then its modifiers."""

@@ -20,6 +20,7 @@ from robbdd_tools.features.studies import is_study
 from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.workbench.log_findings import log_findings
 from robbdd_tools.workbench.scene_findings import SceneChecker
 
 
@@ -109,6 +110,7 @@ class Worker:
             else:
                 found = shape_diagnostics(snapshot, request.uri, request.shapes, validation, is_superseded)
                 found += [] if is_superseded() else self.scenes.findings(snapshot, request.uri)
+                found += [] if is_superseded() else log_findings(snapshot, request.uri)
         except Superseded:
             self.left[request.uri] = left + 1
             return None
@@ -130,6 +132,7 @@ class Worker:
             else:
                 found += shape_diagnostics(snapshot, request.uri, request.shapes, together=together)
             found += [entry for uri in together for entry in self.scenes.findings(snapshot, uri)]
+            found += [entry for uri in together for entry in log_findings(snapshot, uri)]
         except Exception as error:  # As above.
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}", together)
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}

@@ -43,6 +43,7 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "Provider": (SymbolKind.PROVIDER,),
     "Observation": (SymbolKind.OBSERVATION,),
     "Policy": (SymbolKind.POLICY,),
+    "Log": (SymbolKind.ROBOT_LOG,),
 }
 
 _SCENE_KINDS = {*_ELEMENTS, *_ELEMENT_SETS, SymbolKind.COMPOSITION, SymbolKind.SCENE, SymbolKind.NAMESPACE}

@@ -15,6 +15,7 @@ from robbdd_tools.syntax.scene_tree import (
     Node,
     Number,
     PythonAttribute,
+    Quantity,
     Ref,
     Text,
 )
@@ -197,8 +198,65 @@ class Policy(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class LogCondition(Node):
+    """``<template.variable> = value``: the value with which the robot executed the scenario."""
+
+    variable: Ref
+    value: Ref | Quantity | Number | Text
+
+
+@dataclass(frozen=True, slots=True)
+class LogEvent(Node):
+    """``<event> when "/topic becomes 2"``."""
+
+    event: Ref
+    signal: Text
+
+
+@dataclass(frozen=True, slots=True)
+class LogGrip(Node):
+    """``<agent> while "/topic"``: the agent holds something while the signal is true."""
+
+    agent: Ref
+    signal: Text
+
+
+@dataclass(frozen=True, slots=True)
+class LogError(Node):
+    """``3 mm of obj <…>``: the largest error of a measured position, angle or speed; without an element, of all."""
+
+    size: Quantity
+    target: Link | None
+
+
+@dataclass(frozen=True, slots=True)
+class RobotLog(Node):
+    """``robot log (ns=…) name { path: "…" … }``: a recording of a real robot, and the meaning of the names in it.
+
+    ``frames``, ``bases`` and ``joints`` map frames of things, frames of the bases of arms, and topics of joint states
+    to elements.
+    """
+
+    namespace: NamespaceArgument
+    name: Name
+    path: Text
+    conditions: tuple[LogCondition, ...]
+    frames: tuple[StringMapping, ...]
+    bases: tuple[StringMapping, ...]
+    world: Text | None
+    joints: tuple[StringMapping, ...]
+    events: tuple[LogEvent, ...]
+    grips: tuple[LogGrip, ...]
+    annotations: Text | None
+    errors: tuple[LogError, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Execution(Node):
-    """``Scenario Exec (ns=…) name { … }``; ``timeout`` in seconds of simulated time."""
+    """``Scenario Exec (ns=…) name { … }``; ``timeout`` in seconds of simulated time.
+
+    ``log`` is the recording on which ``robbdd judge`` judges the execution.
+    """
 
     namespace: NamespaceArgument
     name: Name
@@ -209,3 +267,4 @@ class Execution(Node):
     repeat: Number | None
     seed: Number | None
     timeout: Number | None
+    log: Ref | None

@@ -55,6 +55,7 @@ class SymbolKind(StrEnum):
     PROVIDER = "observation provider"
     OBSERVATION = "observation"
     POLICY = "observation policy"
+    ROBOT_LOG = "robot log"
     EXECUTION = "scenario execution"
 
 

@@ -33,6 +33,7 @@ _RULE_WORDS = {
     "ImplementationPath": "the name of a behaviour implementation",
     "ProviderPath": "the name of an observation provider",
     "PolicyPath": "the name of an observation policy",
+    "LogPath": "the name of a robot log",
 }
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?![\w%.])")
 _QUOTED_QUANTITY = re.compile(r"([\"'])([-+]?[\d.]+\s*(?:m/s|deg/s|deg|rad|mm|cm|ms|kg|g|m|s|N|%))\1")

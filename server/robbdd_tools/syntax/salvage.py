@@ -39,6 +39,7 @@ _HEADERS = (
     (r"obs\s+provider\b" + _NAMED, SymbolKind.PROVIDER),
     (r"obs\s+policy\b" + _NAMED, SymbolKind.POLICY),
     (r"observation\b" + _NAMED, SymbolKind.OBSERVATION),
+    (r"robot\s+log\b" + _NAMED, SymbolKind.ROBOT_LOG),
     (r"Scenario\s+Exec\b" + _NAMED, SymbolKind.EXECUTION),
     (rf"ns\s+{_NAME}(?P<ns>)", SymbolKind.NAMESPACE),
 )

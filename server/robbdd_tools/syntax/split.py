@@ -48,6 +48,7 @@ _STARTERS = {
         r"bhv\s+impl\b",
         r"obs\s+(?:provider|policy)\b",
         r"observation\s*\(",
+        r"robot\s+log\b",
         r"Scenario\s+Exec\b",
     ),
 }

@@ -39,6 +39,7 @@ _TOP: dict[type[tree.Node], SymbolKind] = {
     tree.Provider: SymbolKind.PROVIDER,
     tree.Observation: SymbolKind.OBSERVATION,
     tree.Policy: SymbolKind.POLICY,
+    tree.RobotLog: SymbolKind.ROBOT_LOG,
     tree.Execution: SymbolKind.EXECUTION,
 }
 

@@ -47,10 +47,15 @@ from robbdd_tools.syntax.bddx_tree import (
     Implementation,
     LessThan,
     LinearDistance,
+    LogCondition,
+    LogError,
+    LogEvent,
+    LogGrip,
     Observation,
     Policy,
     ProcessSystem,
     Provider,
+    RobotLog,
     RosAction,
     RosTopic,
     SimulatedStates,
@@ -183,10 +188,10 @@ DeclarationTree = (
     | Provider
     | Observation
     | Policy
+    | RobotLog
     | Execution
 )
-ChunkTree = DeclarationTree | Variant
-"""Tree of a ``Declaration``; a scenario parsed by itself is one too."""
+ChunkTree = DeclarationTree | Variant  # The tree of a ``Declaration``; a scenario parsed by itself is one, too.
 
 __all__ = [
     "Actuation",
@@ -248,6 +253,10 @@ __all__ = [
     "Limits",
     "LinearDistance",
     "Link",
+    "LogCondition",
+    "LogError",
+    "LogEvent",
+    "LogGrip",
     "Mapping",
     "Member",
     "Mimic",
@@ -291,6 +300,7 @@ __all__ = [
     "Requirement",
     "RevoluteJoint",
     "RigidBody",
+    "RobotLog",
     "RosAction",
     "RosPath",
     "RosTopic",

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from robbdd_tools.base.quantity_units import QuantityError, read_quantity
-from robbdd_tools.monitor.trace import OTHERS
+from robbdd_tools.protocol.recorded_log import ERROR_KEYS
 
 FORM = "write '3 mm', 'cube1=5 mm', '2 deg' or '0.05 m/s'"
-KEYS = {"length": OTHERS, "angle": "angle", "speed": "speed"}
-"""Dimension of a quantity → its entry in ``LogRequest.uncertainty``."""
 
 
 def read_uncertainty(text: str) -> tuple[str, float]:
@@ -16,7 +14,7 @@ def read_uncertainty(text: str) -> tuple[str, float]:
     Raises ``QuantityError`` for another text.
     """
     element, separator, stated = text.rpartition("=")
-    for dimension, key in KEYS.items():
+    for dimension, key in ERROR_KEYS.items():
         try:
             value = read_quantity(stated, dimension).si
         except QuantityError:

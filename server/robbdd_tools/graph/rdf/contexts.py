@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import urllib.request
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -20,6 +19,7 @@ from typing import Any, cast
 from urllib.error import URLError
 from urllib.parse import urlsplit
 
+from robbdd_tools.base.cache_folder import cache_folder as cached_data
 from robbdd_tools.base.data import data_file
 from robbdd_tools.base.files import Unreadable, load_text, read_text, uri_to_path
 from robbdd_tools.base.limits import MIB, MODEL_SIZE
@@ -188,12 +188,8 @@ def file_for(url: str, folder: Path) -> Path | None:
 
 
 def cache_folder() -> Path:
-    """Return the folder of fetched contexts: ``ROBBDD_CACHE``, or the user's cache folder if that is not set."""
-    own = os.environ.get("ROBBDD_CACHE")
-    if own:
-        return Path(own) / "contexts"
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
-    return (Path(base) if base else Path.home() / ".cache") / "robbdd-tools" / "contexts"
+    """Return the folder of fetched contexts."""
+    return cached_data() / "contexts"
 
 
 def _local(url: str, path: Path) -> Any:

@@ -11,6 +11,7 @@ from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.graph.acceptance_model import Execution, Iri
 from robbdd_tools.graph.rdf.records import Incomplete, Records
 from robbdd_tools.graph.read.instances import InstanceReader, Places, number, python_name
+from robbdd_tools.graph.read.robot_logs import read_log_of
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def _complete(records: Records, node: Iri, instances: InstanceReader, places: Pl
         1 if repeat is None else max(1, int(repeat)),
         None if seed is None else int(seed),
         number(records, node, "rbw:timeout-seconds"),
+        read_log_of(records, node, places),
     )
 
 

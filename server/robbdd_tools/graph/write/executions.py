@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from robbdd_tools.graph.write.robot_logs import add_log
 from robbdd_tools.graph.write.units import LENGTHS
 from robbdd_tools.syntax import tree
 
@@ -35,6 +36,8 @@ def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> N
             _add_observation(frame, root)
         case tree.Policy():
             _add_policy(frame, root)
+        case tree.RobotLog():
+            add_log(frame, root)
         case tree.Execution():
             _add_execution(frame, root, position)
         case _:
@@ -204,6 +207,8 @@ def _add_execution(frame: Frame, root: tree.Execution, position: int) -> None:
     if root.seed is not None:
         _say(frame, node, "rbw:seed", root.seed.value, root.seed)
     _number(frame, node, "rbw:timeout-seconds", root.timeout)
+    if root.log is not None:
+        sink.add(node, "rbw:log", frame.target(root.log), frame.at(root.log))
 
 
 def _add_listed(frame: Frame, node: URIRef, term: str, list_term: str, references: Iterable[tree.Ref]) -> None:

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from judging.judged_policies import spec_of
-from robbdd_tools.judging.log_names import FramesProblem, frame_of, occurrences_of, stated_frames, tool_frame_of
 from robbdd_tools.logs.log_contents import TextStamp
+from robbdd_tools.logs.log_names import FramesProblem, frame_of, occurrences_of, stated_frames, tool_frame_of
 from robbdd_tools.monitor.policy import Observation, Policy
 from world.worlds import CUBE
 
