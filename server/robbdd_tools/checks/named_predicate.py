@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.base.quantity_units import QuantityError, read_quantity
 from robbdd_tools.checks.finding import article, change, finding, related_to, written_text
 from robbdd_tools.names.elements import Site
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.resolve import Resolution
+    from robbdd_tools.syntax.declaration import Declaration
 
 CODE = "named-predicate"
 _OWNERS = (tree.Template, tree.Story, tree.Variant, tree.NamedPredicate)
@@ -28,16 +32,42 @@ _OWNERS = (tree.Template, tree.Story, tree.Variant, tree.NamedPredicate)
 
 def named_predicate(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report definitions of predicates that contradict themselves, and phrases that do not fit them."""
+    scope = snapshot.scope(file.document.uri)
+
+    @cache
+    def is_predicate(name: str) -> bool:
+        return next(scope.declaring(name, SymbolKind.PREDICATE), None) is not None
+
     for placed in file.parts():
-        site = Site(snapshot, file, placed)
-        if not isinstance(site.tree, _OWNERS):
+        root = placed.declaration.tree
+        if not isinstance(root, _OWNERS):
             continue
-        if isinstance(site.tree, tree.NamedPredicate):
-            yield from _definition(site, site.tree)
-        for node in walk(site.tree):
-            if isinstance(node, tree.NamedUse):
-                yield from _use(site, node)
-        yield from _foreign_parameters(site)
+        uses = _named_uses(placed.declaration)
+        is_definition = isinstance(root, tree.NamedPredicate)
+        has_parameters = any(map(is_predicate, _owners(placed.targets.resolution)))
+        if not uses and not is_definition and not has_parameters:
+            continue
+        site = Site(snapshot, file, placed)
+        if is_definition:
+            yield from _definition(site, root)
+        for node in uses:
+            yield from _use(site, node)
+        if has_parameters:
+            yield from _foreign_parameters(site)
+
+
+@kept_with_key
+def _named_uses(declaration: Declaration) -> tuple[tree.NamedUse, ...]:
+    """Return the phrases of named predicates in a declaration."""
+    root = declaration.tree
+    return () if root is None else tuple(node for node in walk(root) if isinstance(node, tree.NamedUse))
+
+
+@kept_with_key
+def _owners(resolution: Resolution) -> frozenset[str]:
+    """Return the declarations whose parts a declaration names, such as variables and parameters."""
+    paths = (target.path.partition(".") for target in resolution.targets.values())
+    return frozenset(owner for owner, dot, _ in paths if dot)
 
 
 def _definition(site: Site, predicate: tree.NamedPredicate) -> Iterator[Diagnostic]:
