@@ -106,7 +106,9 @@ def test_a_rename_changes_the_studies_that_name_a_scenario(tmp_path: Path) -> No
     assert f"{case.text[: own.span.start]}{own.text}{case.text[own.span.end :]}" == f"{HEAD}scenarios: {{ <away> }} }}"
     places = references(case.snapshot, case.uri, case.cursor, with_declaration=True)
     assert sorted(places) == sorted((one.uri, one.span) for one in edits)
-    assert [one.span for one in highlights(case.snapshot, case.uri, case.cursor)] == [own.span]
+    assert [(one.start, one.end) for one in highlights(case.snapshot, case.uri, case.cursor)] == [
+        (own.span.start, own.span.end)
+    ]
 
 
 def test_the_local_name_of_an_iri_is_a_reference_and_another_iri_is_none(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def test_a_variable_is_written_where_it_is_declared_and_given_values_and_read_in
     assert "<fetch.goal>" in text
     case = fixture(text.replace("var goal", "var go$0al"))
     found = highlights(case.snapshot, case.uri, case.cursor)
-    written = [(text[place.span.start : place.span.end], place.writes) for place in found]
+    written = [(text[place.start : place.end], place.writes) for place in found]
     assert written == [("goal", True), ("goal", False), ("goal", False), ("goal", False), ("goal", True)]
 
 

@@ -18,8 +18,9 @@ from kit import MODEL, SCENE
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import outline_pieces
+from robbdd_tools.features.references import highlights
 from robbdd_tools.lsp.convert import Converter, symbol_kind
-from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text
+from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text, highlights_text
 from robbdd_tools.lsp.json_text import Passage, with_children
 from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.project import Project, Snapshot
@@ -93,6 +94,30 @@ def test_the_outline_over_any_edits_is_that_of_the_definitions(
             for fold in folds(snapshot, uri)
         ]
         assert json.loads(folds_text(folds(snapshot, uri)).text) == json.loads(serialise(plain))
+
+
+@pytest.mark.parametrize("encoding", list(types.PositionEncodingKind))
+@pytest.mark.parametrize("before", ["", "// 😀 é\r\n", "/*😀*/ "], ids=["ascii", "lines", "beside"])
+def test_highlights_as_text_are_the_converted_objects(encoding: types.PositionEncodingKind, before: str) -> None:
+    """The text is the one that the protocol's own serialisation gives, byte for byte."""
+    text = (before if before.endswith("\n") else "") + MODEL.replace(
+        "Event (ns=t) start\n", f"Event (ns=t) start // {before.strip()}\n"
+    )
+    project, convert = Project(), Converter(encoding)
+    project.open(SCENE_URI, 1, SCENE)
+    project.open(URI, 1, text)
+    snapshot = project.snapshot()
+    document = snapshot.document(URI)
+    found = highlights(snapshot, URI, text.index("var goal") + 5)
+    assert len(found) > 3
+    objects = [
+        types.DocumentHighlight(
+            range=convert.range(document, Span(one.start, one.end)),
+            kind=types.DocumentHighlightKind.Write if one.writes else types.DocumentHighlightKind.Read,
+        )
+        for one in found
+    ]
+    assert highlights_text(convert, document, found).text == serialise(objects)
 
 
 def test_a_declaration_that_only_moves_is_not_converted_again() -> None:

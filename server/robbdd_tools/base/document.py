@@ -5,8 +5,11 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate
+
+LATEST = 16
+"""Number of texts whose lines are kept."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -47,21 +50,7 @@ class Document:
     @cached_property
     def line_starts(self) -> tuple[int, ...]:
         """The offset of the first code point of each line. ``\n``, ``\r\n`` and a lone ``\r`` end a line."""
-        text = self.text
-        if "\r" not in text:
-            return (0, *accumulate([len(line) + 1 for line in text.split("\n")[:-1]]))
-        starts = [0]
-        index = 0
-        while True:
-            newline = text.find("\n", index)
-            carriage = text.find("\r", index, newline if newline >= 0 else len(text))
-            if carriage >= 0 and carriage + 1 != newline:
-                index = carriage + 1
-            elif newline >= 0:
-                index = newline + 1
-            else:
-                return tuple(starts)
-            starts.append(index)
+        return _line_starts(self.text)
 
     def line_at(self, offset: int) -> int:
         """Return the line of an offset in the text."""
@@ -84,6 +73,25 @@ class Document:
         start = self.line_starts[line]
         end = self.line_starts[line + 1] if line + 1 < len(self.line_starts) else len(self.text)
         return self.text[start:end].rstrip("\r\n")
+
+
+@lru_cache(maxsize=LATEST)
+def _line_starts(text: str) -> tuple[int, ...]:
+    """Return the offsets of the lines. Several documents have the same text, such as the one that a client has open."""
+    if "\r" not in text:
+        return (0, *accumulate([len(line) + 1 for line in text.split("\n")[:-1]]))
+    starts = [0]
+    index = 0
+    while True:
+        newline = text.find("\n", index)
+        carriage = text.find("\r", index, newline if newline >= 0 else len(text))
+        if carriage >= 0 and carriage + 1 != newline:
+            index = carriage + 1
+        elif newline >= 0:
+            index = newline + 1
+        else:
+            return tuple(starts)
+        starts.append(index)
 
 
 def edited_part(old: str, new: str) -> tuple[int, int]:

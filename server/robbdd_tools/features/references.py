@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.imported_statements import places_in_graphs
 from robbdd_tools.features.studies import is_study, uses_in_study
-from robbdd_tools.features.used_names import name_of, places_of
+from robbdd_tools.features.used_names import name_of, places_of, uses_by_part
 from robbdd_tools.names.types import columns_of
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
@@ -20,19 +20,21 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
 
 
 Place = tuple[str, Span]
+_Places = set[tuple[int, int]]
 
 
-@dataclass(frozen=True, slots=True)
-class Highlight:
-    """A place where a name is written.
+class Highlight(NamedTuple):
+    """The offsets of a place where a name is written.
 
     ``writes`` is true where the name is declared, and where a variation assigns values to the variable of this name.
     """
 
-    span: Span
+    start: int
+    end: int
     writes: bool
 
 
@@ -59,26 +61,37 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
     if found is None or file is None:
         return []
     definition = found[1]
-    own = uses_in_study(snapshot, uri, definition) if is_study(uri) else None
-    spans = dict.fromkeys(places_of(snapshot, file, name_of(definition)) if own is None else own)
-    written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else set[Span]()
+    # Pairs of numbers instead of spans: a variable may be used ten thousand times.
+    if is_study(uri):
+        places = {(span.start, span.end) for span in uses_in_study(snapshot, uri, definition)}
+    else:
+        parts = uses_by_part(snapshot, file, name_of(definition))
+        places = {(part.offset + span.start, part.offset + span.end) for part, spans in parts for span in spans}
+    written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else _Places()
     if definition.uri == uri:
-        spans[definition.span] = None
-        written.add(definition.span)
-    # Comparing tuples is many times as fast as comparing spans.
-    ordered = sorted(spans, key=lambda span: (span.start, span.end))
-    return [Highlight(span, span in written) for span in ordered]
+        own = (definition.span.start, definition.span.end)
+        places.add(own)
+        written.add(own)
+    return [Highlight(*place, place in written) for place in sorted(places)]
 
 
-def _written(file: FileAnalysis) -> set[Span]:
-    """Return the spans in a file where variations name the variables to which they assign values."""
+def _written(file: FileAnalysis) -> _Places:
+    """Return the places in a file where variations name the variables to which they assign values."""
     return {
-        Span(ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end).shifted(placed.offset)
+        (placed.offset + start, placed.offset + end)
         for placed in file.parts()
-        for clauses in clauses_of(placed.declaration)
+        for start, end in _written_in(placed.declaration)
+    }
+
+
+@kept_with_key
+def _written_in(declaration: Declaration) -> tuple[tuple[int, int], ...]:
+    return tuple(
+        (ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end)
+        for clauses in clauses_of(declaration)
         if isinstance(clauses.node, tree.Variant)
         for ref, _ in columns_of(clauses.node.variation)
-    }
+    )
 
 
 def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:

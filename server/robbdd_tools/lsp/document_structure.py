@@ -1,7 +1,8 @@
-"""Write the outline and the folds of a document as JSON text."""
+"""Write the outline, the folds and the highlights of a document as JSON text."""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
     from robbdd_tools.features.folding import Fold
     from robbdd_tools.features.outline import Item, OutlinePiece
+    from robbdd_tools.features.references import Highlight
     from robbdd_tools.lsp.convert import Converter
 
 
@@ -62,3 +64,23 @@ def folds_text(folds: Iterable[Fold]) -> JsonText:
 
 
 _FOLD = '{"startLine": %d, "endLine": %d, "kind": "%s"}'
+
+
+def highlights_text(convert: Converter, document: Document, found: Iterable[Highlight]) -> JsonText:
+    """Return the highlights of a name in a document."""
+    is_ascii, starts = document.text.isascii(), document.line_starts
+
+    def place(offset: int) -> tuple[int, int]:
+        if is_ascii:
+            # A character takes one unit in every encoding.
+            line = bisect_right(starts, offset) - 1
+            return line, offset - starts[line]
+        position = convert.position(document, offset)
+        return position.line, position.character
+
+    written = (_HIGHLIGHT % (*place(one.start), *place(one.end), _WRITTEN if one.writes else _READ) for one in found)
+    return JsonText(f"[{joined(written)}]")
+
+
+_HIGHLIGHT = '{"range": {"start": {"line": %d, "character": %d}, "end": {"line": %d, "character": %d}}, "kind": %d}'
+_READ, _WRITTEN = types.DocumentHighlightKind.Read.value, types.DocumentHighlightKind.Write.value

@@ -15,7 +15,7 @@ from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
 from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.lsp.analysis_thread import Urgency
 from robbdd_tools.lsp.convert import document_of, symbol_kind
-from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text
+from robbdd_tools.lsp.document_structure import OutlineWriter, folds_text, highlights_text
 from robbdd_tools.lsp.json_text import JsonText
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
@@ -40,17 +40,11 @@ def _register_uses(server: RobbddServer) -> None:
         return await ls.importers.analyse(params.text_document.uri, params.position, find)
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
-    async def highlight(ls: RobbddServer, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        def find(snapshot: Snapshot) -> list[types.DocumentHighlight]:
+    async def highlight(ls: RobbddServer, params: types.DocumentHighlightParams) -> JsonText:
+        def find(snapshot: Snapshot) -> JsonText:
             document = document_of(snapshot, params.text_document.uri)
             found = highlights(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return [
-                types.DocumentHighlight(
-                    range=ls.convert.range(document, place.span),
-                    kind=types.DocumentHighlightKind.Write if place.writes else types.DocumentHighlightKind.Read,
-                )
-                for place in found
-            ]
+            return highlights_text(ls.convert, document, found)
 
         return await ls.analyse(find)
 

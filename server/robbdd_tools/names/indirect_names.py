@@ -83,9 +83,20 @@ def targets_in(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
     """Map each alias in a file to its targets."""
     found: dict[str, tuple[str, ...]] = {}
     for placed in file.declarations:
-        for name, target in _of_declaration(placed.declaration):
+        for name, target in _aliases(placed.declaration):
             found[name] = (*found.get(name, ()), target)
     return found
+
+
+@kept_with_key
+def _aliases(declaration: Declaration) -> tuple[tuple[str, str], ...]:
+    return tuple(_of_declaration(declaration))
+
+
+@kept_with_key
+def _variants_in(declaration: Declaration) -> tuple[tuple[str, str], ...]:
+    variants = (symbol for symbol in declaration.symbols if symbol.kind is SymbolKind.VARIANT)
+    return tuple((variant.name, variant.path) for variant in variants)
 
 
 def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
@@ -94,8 +105,8 @@ def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
         if symbol.target is not None:
             yield symbol.path, symbol.target
         elif symbol.kind is SymbolKind.STORY:
-            variants = (part for part in declaration.symbols if part.kind is SymbolKind.VARIANT)
-            yield from ((variant.name, variant.path) for variant in variants)
+            for part in [placed.declaration for placed in declaration.parts] or [declaration]:
+                yield from _variants_in(part)
     if isinstance(root, tree.Scene):
         yield from ((root.name.text, entry.reference.path) for entry in root.entries)
     elif isinstance(root, tree.Composition):
