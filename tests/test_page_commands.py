@@ -107,3 +107,23 @@ def test_texts_that_programs_read_can_be_read(page: Path) -> None:
         read = READERS.get(block["kind"])
         if read is not None and "…" not in block["text"]:
             read(block["text"])
+
+
+def test_the_page_of_the_command_line_has_each_command_with_each_of_its_options() -> None:
+    page = (DOCS / "command-line.md").read_text(encoding="utf-8")
+    parts = dict(re.findall(r"^#{2,} (robbdd .+)\n((?:(?!#).*\n?)*)", page, re.MULTILINE))
+    known = dict(all_commands("robbdd", argument_parser()))
+    assert list(parts) == sorted(known)
+    assert {"robbdd study resume", "robbdd evidence verify"} <= set(known)
+    for name, parser in known.items():
+        if not subcommands(parser):
+            usage = re.sub(r"\s+", " ", parser.format_usage())
+            wanted = set(OPTION.findall(usage)) - {"-h"}
+            assert wanted <= set(OPTION.findall(parts[name].replace("`", " "))), name
+
+
+def all_commands(name: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """Yield the commands below a parser, at any depth, with their names."""
+    for word, command in subcommands(parser).items():
+        yield f"{name} {word}", command
+        yield from all_commands(f"{name} {word}", command)

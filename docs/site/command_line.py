@@ -27,21 +27,29 @@ WIDTH = 1_000
 
 def page() -> str:
     """Return the text of the page."""
-    parser = argument_parser()
+    return "\n".join([HEAD, *sections("robbdd", argument_parser(), "##")])
+
+
+def sections(name: str, parser: argparse.ArgumentParser, marks: str) -> Iterator[str]:
+    """Yield the lines on the commands of a parser. ``marks`` are those of their headings."""
     commands = {name: command for action in arguments_of(parser) for name, command in commands_of(action).items()}
     parser.formatter_class = partial(argparse.HelpFormatter, width=WIDTH)
     purposes = dict[str, str](COMMAND.findall(parser.format_help()))
-    sections = (section(name, purposes[name], commands[name]) for name in sorted(commands))
-    return "\n".join([HEAD, *(line for lines in sections for line in lines)])
+    for word, command in sorted(commands.items()):
+        purpose = purposes[word]
+        yield from (f"{marks} {name} {word}", "", f"{purpose[0].upper()}{purpose[1:]}.", "")
+        yield from table(command)
+        yield from sections(f"{name} {word}", command, f"{marks}#")
 
 
-def section(name: str, purpose: str, parser: argparse.ArgumentParser) -> Iterator[str]:
-    """Yield the lines on a command."""
-    yield from (f"## robbdd {name}", "", f"{purpose[0].upper()}{purpose[1:]}.", "")
+def table(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """Yield the lines on the arguments of a command; none if it only chooses among its own commands."""
+    shown = [one for one in arguments_of(parser) if one.dest != "help" and one.help != argparse.SUPPRESS]
+    if any(map(commands_of, shown)):
+        return
     yield from ("| argument | effect |", "|---|---|")
-    for action in arguments_of(parser):
-        if action.dest != "help" and action.help != argparse.SUPPRESS:
-            yield f"| {in_cell(written(action))} | {in_cell((action.help or '').replace('%%', '%'))} |"
+    for action in sorted(shown, key=lambda one: bool(one.option_strings)):
+        yield f"| {in_cell(written(action))} | {in_cell((action.help or '').replace('%%', '%'))} |"
     yield ""
 
 
