@@ -7,8 +7,9 @@ import socket
 import subprocess
 import sys
 from collections.abc import Generator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from time import sleep
 
 PRELOAD = Path(__file__).with_name("quick_worker.py")
 TESTS = Path(__file__).parents[1]
@@ -28,7 +29,13 @@ class DaskProcesses:
         self.workers: list[subprocess.Popen[bytes]] = []
 
     def start_scheduler(self) -> subprocess.Popen[bytes]:
-        return self._start("scheduler", "--host", "127.0.0.1", "--port", str(self._port), "--no-dashboard")
+        """Start a scheduler, and wait until it can be connected to: on a busy machine that takes many seconds."""
+        started = self._start("scheduler", "--host", "127.0.0.1", "--port", str(self._port), "--no-dashboard")
+        while started.poll() is None:
+            with suppress(OSError), socket.create_connection(("127.0.0.1", self._port)):
+                break
+            sleep(0.05)
+        return started
 
     def start_worker(self, *, quick: bool = True) -> None:
         preload = ["--preload", str(PRELOAD)] if quick else []
@@ -46,7 +53,7 @@ class DaskProcesses:
 
 @contextmanager
 def dask_processes(folder: Path, workers: int, pause: float = 0.0) -> Generator[DaskProcesses]:
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     with ExitStack() as stack:
         made = DaskProcesses(folder, stack, pause)
         for _ in range(workers):

@@ -8,16 +8,18 @@ from time import sleep
 from unittest.mock import patch
 
 from campaign.study_agents import QuickAgent
-from robbdd_tools.protocol.messages import RunMessage
+from robbdd_tools.protocol.messages import LogLine, RunMessage
 from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run import scheduler
 
 
 class SlowAgent(QuickAgent):
-    """An agent that waits before each execution, as many seconds as ``ROBBDD_PAUSE`` says."""
+    """An agent that waits ``ROBBDD_PAUSE`` seconds before each execution, and warns of ``ROBBDD_WARNING``."""
 
     def executed(self, index: int, spec: ScenarioSpec) -> Iterator[RunMessage]:
         sleep(float(os.environ.get("ROBBDD_PAUSE", "0")))
+        if os.environ.get("ROBBDD_WARNING"):
+            yield LogLine("warning", f"{spec.seed}: {os.environ['ROBBDD_WARNING']}")
         yield from super().executed(index, spec)
 
 

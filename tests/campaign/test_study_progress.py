@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from collections.abc import Iterator
@@ -62,6 +63,18 @@ class InterruptedAgent(QuickAgent):
                     os.kill(os.getpid(), signal.SIGINT)
                     sleep(0.1)
                 sleep(self.seconds)
+
+
+def test_without_stored_runs_the_time_is_stated_after_the_first_executions(
+    study: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["study", "run", str(study), "--jobs", "3"])
+    first, second = capsys.readouterr().err.splitlines()
+    assert first.endswith(" 40 executions, 5 batches (no stored run tells how long they take: the first ones will)")
+    stated = r"robbdd: (\d+) executions, about \d+ (?:s|min) left, measured on the first (\d+) executions"
+    assert re.findall(stated, second) == [("36", "4")]
+    main(["study", "run", str(study), "--restart", "--jobs", "7"])
+    assert re.findall(stated, capsys.readouterr().err) == [("33", "7")]
 
 
 @pytest.mark.usefixtures("interruptible")

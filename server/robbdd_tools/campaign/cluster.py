@@ -278,6 +278,4 @@ def _on_worker(part: Part, used: Parcel, prepared: Parcel) -> PartResult:
         task = worker.state.tasks.get(key)
         return task is not None and task.state == "executing"
 
-    folder = Path(worker.local_directory) / "robbdd"
-    folder.mkdir(parents=True, exist_ok=True)
-    return execute_part(part, used, prepared, folder, wanted)
+    return execute_part(part, used, prepared, Path(worker.local_directory) / "robbdd", wanted)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from robbdd_tools.campaign.cluster import Cluster
     from robbdd_tools.campaign.study_batches import Batch
     from robbdd_tools.campaign.study_file import Study
+    from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.workbench.run import Run
 
@@ -139,7 +140,7 @@ class ClusterStudyRun(StudyRun):
                 for part, result in self._cluster.results():
                     self._take(part, result)
                     made += len(part.indices)
-                    yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9))
+                    yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9), made)
                 if not self.ending:
                     self._store_complete()
         except BaseException as error:
@@ -209,7 +210,7 @@ class ClusterStudyRun(StudyRun):
             trace.parent.mkdir(exist_ok=True)
             replace_file(trace, content)
         try:
-            opened.run.receive(map(decode, result.lines), result.host)
+            opened.run.receive(self._received(result.lines), result.host)
         except OtherSimulator as error:
             self.ending = str(error)
             return
@@ -219,6 +220,12 @@ class ClusterStudyRun(StudyRun):
             self.ending = f"on {result.host}, {result.ending}"
             return
         self._pace.add(result.seconds, len(part.indices))
+
+    def _received(self, lines: Iterable[str]) -> Iterator[RunMessage]:
+        """Yield the messages of a part, and pass on its warnings."""
+        for message in map(decode, lines):
+            self._warn(message)
+            yield message
 
     def _store_complete(self) -> None:
         """Close complete batches, and move them to the study's store in the order of the study."""

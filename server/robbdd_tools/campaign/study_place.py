@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 FOLDER = Path(".robbdd") / "studies"
 RUNS = "runs"
 """Folder of the runs in which executions of a study were replayed."""
+NEVER_BEGUN = "the study has no results: `robbdd study run` begins it"
 BATCHES = "batches"
 """Folder of the batches in progress."""
 
@@ -57,8 +58,13 @@ def remove_results(folder: Path) -> None:
 def open_results(folder: Path) -> StudyReader:
     """Open the results of a study to read. Raises ``StudyProblem`` if there are none, and ``DatabaseProblem``."""
     if not has_results(folder):
-        raise StudyProblem("the study has no results: `robbdd study run` begins it")
-    return read_study_store(folder)
+        raise StudyProblem(NEVER_BEGUN)
+    store = read_study_store(folder)
+    if store.fact("digest") is None:
+        # A full disk or a kill has ended it while the database was made.
+        store.close()
+        raise StudyProblem(NEVER_BEGUN)
+    return store
 
 
 def is_executed(folder: Path) -> bool:

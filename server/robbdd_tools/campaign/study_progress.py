@@ -71,11 +71,13 @@ class StudyProgress:
     - ``total``: the number of executions of the whole study.
     - ``tally``: the verdicts so far. It changes while the study is executed.
     - ``rate``: executions per s of wall time since the study was begun or resumed; 0 if unknown.
+    - ``made``: the number of executions since then.
     """
 
     total: int
     tally: Tally
     rate: float = 0.0
+    made: int = 0
 
     @property
     def finished(self) -> int:

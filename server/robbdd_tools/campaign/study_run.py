@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from time import monotonic
@@ -17,7 +17,7 @@ from robbdd_tools.campaign.study_changes import changed_files, changed_study, us
 from robbdd_tools.campaign.study_place import BATCHES, StudyProblem
 from robbdd_tools.campaign.study_progress import StudyProgress, Tally, WorkerState
 from robbdd_tools.campaign.study_traces import MEGABYTE, keep_traces, traces_in, trim_traces
-from robbdd_tools.protocol.messages import ScenarioFinished
+from robbdd_tools.protocol.messages import LogLine, ScenarioFinished
 from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.report import values_words
 from robbdd_tools.run.store import LOCK, NoSuchRun, begin_in, run_in
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.campaign.stopping import Ruling
     from robbdd_tools.campaign.study_file import Study
+    from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.run.results import RunResults
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import StoredRun
@@ -55,6 +56,8 @@ class StudyRun:
         self._draining = ""
         self.ending = ""
         self.tally = Tally()
+        self.warned: Callable[[str], None] = lambda _: None
+        """Called with each warning of an agent, such as a trace that could not be written."""
         self.batches = batches(study)
         self.total = sum(batch.size for batch in self.batches)
         folder.mkdir(parents=True, exist_ok=True)
@@ -131,7 +134,7 @@ class StudyRun:
                 return
             for _ in self._execute(batch):
                 made += 1
-                yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9))
+                yield StudyProgress(self.total, self.tally, made / max(monotonic() - began, 1e-9), made)
             if self.ending:
                 return
 
@@ -188,9 +191,15 @@ class StudyRun:
             if isinstance(message, ScenarioFinished):
                 self.tally.add(run.progress.scenarios[message.index])
                 yield
+            else:
+                self._warn(message)
         self._run = None
         # If a batch is complete in spite of a request to end, it is stored first.
         self.ending = run.problem or ("" if run.progress.complete else self._reason or self._draining or run.ending)
+
+    def _warn(self, message: RunMessage) -> None:
+        if isinstance(message, LogLine) and message.level != "info":
+            self.warned(message.text)
 
     def _store(self, batch: Batch, place: StoredRun) -> None:
         """Move the results of a finished batch to the study's store."""

@@ -35,7 +35,7 @@ from robbdd_tools.commands.study_standing import standing
 from robbdd_tools.run.report import margin
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.store import store_beside
-from robbdd_tools.workbench.time_estimate import estimate
+from robbdd_tools.workbench.time_estimate import TimeEstimate, estimate
 
 if TYPE_CHECKING:
     from robbdd_tools.run.study_reader import StudyReader
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
 """Ruling on a required pass rate → exit code."""
 INTERRUPTED = "the study was interrupted"
+UNMEASURED = "no stored run tells how long they take: the first ones will"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +104,14 @@ def explained(work: Callable[[], int]) -> int:
     """Execute some work and return its exit code. If it fails, print the reason."""
     try:
         return work()
-    except RobbddError as error:
-        return fail(str(error))
-    except OSError as error:
-        return fail(f"{error.filename}: {error.strerror or error}" if error.filename else str(error))
+    except (OSError, RobbddError) as error:
+        return fail(_reason(error))
+
+
+def _reason(error: OSError | RobbddError) -> str:
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror or error}"
+    return str(error)
 
 
 def _counted(number: int, word: str) -> str:
@@ -123,11 +128,16 @@ def _run_study(options: StudyOptions) -> int:
         remove_results(folder)
     policy = Policy.of(jobs=options.jobs)
     with _begun(study, folder, policy, options) as run:
-        print_note(f"robbdd: {_announcement(study, run, policy)}")
-        ended_by = _follow(run)
+        expected = _expected(study, policy)
+        print_note(f"robbdd: {_announcement(study, run, expected)}")
+        display = StudyDisplay(run, jobs=policy.jobs, measures=expected.seconds is None)
+        try:
+            ended_by = _follow(run, display)
+        except OSError as error:
+            return fail(f"{_reason(error)}: {_continued(options)}")
         _print_results(run.store)
         if ended_by or run.ending:
-            print_note(f"robbdd: {run.ending}: continue with `robbdd study resume {options.path}`")
+            print_note(f"robbdd: {run.ending}: {_continued(options)}")
             return signal_code(ended_by) if ended_by else FAILED
         if study.stop is not None:
             ruling = run.ruling()
@@ -156,22 +166,29 @@ def _begun(study: Study, folder: Path, policy: Policy, options: StudyOptions) ->
             yield run
 
 
-def _announcement(study: Study, run: StudyRun, policy: Policy) -> str:
-    cells = f" in {len(study.cells)} combinations of levels" if len(study.cells) > 1 else ""
+def _continued(options: StudyOptions) -> str:
+    return f"continue with `robbdd study resume {options.path}`"
+
+
+def _expected(study: Study, policy: Policy) -> TimeEstimate:
     specs = chain.from_iterable(cell.plan.specs(repeat=study.repeat) for cell in study.cells)
-    expected = estimate(specs, store_beside(study.path).database, policy.jobs)
-    basis = f" ({expected.basis})" if expected.seconds is not None else ""
+    return estimate(specs, store_beside(study.path).database, policy.jobs)
+
+
+def _announcement(study: Study, run: StudyRun, expected: TimeEstimate) -> str:
+    cells = f" in {len(study.cells)} combinations of levels" if len(study.cells) > 1 else ""
+    basis = UNMEASURED if expected.seconds is None else expected.basis
     count = len(run.batches)
-    return f"{study.name}: {expected}{cells}, {count} {'batch' if count == 1 else 'batches'}{basis}"
+    return f"{study.name}: {expected}{cells}, {count} {'batch' if count == 1 else 'batches'} ({basis})"
 
 
-def _follow(run: StudyRun) -> int:
+def _follow(run: StudyRun, display: StudyDisplay) -> int:
     """Execute the study and print its progress. Return the number of the signal that ended the study, or 0.
 
     After the first Ctrl-C, executions in progress finish. A second one, or any other signal, ends them.
     """
     ended_by = 0
-    display = StudyDisplay(run)
+    run.warned = display.warn
 
     def end(number: int) -> None:
         nonlocal ended_by

@@ -17,7 +17,7 @@ from rich.text import Text
 
 from robbdd_tools.campaign.study_progress import StudyProgress
 from robbdd_tools.commands.output import print_note
-from robbdd_tools.commands.study_standing import progress_words, standing
+from robbdd_tools.commands.study_standing import measured_words, progress_words, standing
 from robbdd_tools.commands.terminal import plain, terminal
 
 if TYPE_CHECKING:
@@ -32,6 +32,10 @@ REDRAWN = 2
 """How many times per second the progress is redrawn."""
 MOST_WORKERS = 16
 """Maximum number of workers that are listed."""
+MOST_WARNINGS = 10
+"""Maximum number of warnings of agents that are printed."""
+MEASURED = 10
+"""Maximum number of executions after which the duration of the study is stated."""
 BAR = 40
 """Columns of the bar."""
 
@@ -41,10 +45,15 @@ class StudyDisplay:
 
     If the terminal can move its cursor, the progress is redrawn in place. Otherwise, a line without the workers is
     printed every ``PAUSE`` seconds.
+
+    ``measures`` says that no earlier execution tells how long the study takes: this is stated after its first
+    executions. ``jobs`` is the number of executions at a time.
     """
 
-    def __init__(self, run: StudyRun) -> None:
+    def __init__(self, run: StudyRun, *, jobs: int = 1, measures: bool = False) -> None:
         self._run = run
+        self._measured = max(jobs, min(MEASURED, run.total // MEASURED)) if measures else None
+        self._warnings = 0
         self._latest: StudyProgress | None = None
         self._note = ""
         self._printed = monotonic()
@@ -68,9 +77,20 @@ class StudyDisplay:
     def update(self, progress: StudyProgress) -> None:
         """Show the latest progress."""
         self._latest = progress
+        if self._measured is not None and progress.made >= self._measured:
+            self._measured = None
+            print_note(f"robbdd: {measured_words(progress)}")
         if self._live is None and monotonic() - self._printed >= PAUSE:
             self._printed = monotonic()
             print_note("; ".join((progress_words(progress), *standing(progress.tally))))
+
+    def warn(self, text: str) -> None:
+        """Print a warning of an agent. Only the first ``MOST_WARNINGS`` are printed."""
+        self._warnings += 1
+        if self._warnings <= MOST_WARNINGS:
+            print_note(f"robbdd: {text}")
+        elif self._warnings == MOST_WARNINGS + 1:
+            print_note("robbdd: further warnings are not printed")
 
     def note(self, text: str) -> None:
         """Show a remark on how the study ends. A signal handler may call it."""

@@ -31,5 +31,14 @@ def progress_words(progress: StudyProgress) -> str:
     counted = f"{progress.finished:,} of {progress.total:,} executions"
     if progress.left is None:
         return counted
-    left = TimeEstimate(progress.total - progress.finished, progress.left, 0).duration
-    return f"{counted}, {progress.rate:.1f} per second, about {left} left"
+    return f"{counted}, {progress.rate:.1f} per second, about {_left(progress).duration} left"
+
+
+def measured_words(progress: StudyProgress) -> str:
+    """Return the remaining executions and their time, measured from the first ones, in words."""
+    first = f"the first {progress.made} execution{'' if progress.made == 1 else 's'}"
+    return f"{_left(progress)} left, measured on {first}"
+
+
+def _left(progress: StudyProgress) -> TimeEstimate:
+    return TimeEstimate(progress.total - progress.finished, progress.left, progress.made)

@@ -23,6 +23,8 @@ LOG = "-wal"
 BUSY = 30.0
 """Seconds that a connection waits while another one writes."""
 _DAMAGE = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+_NO_ROOM = {sqlite3.SQLITE_IOERR_SHMSIZE, sqlite3.SQLITE_IOERR_WRITE}
+"""Extended codes of a file that cannot grow: SQLite calls these I/O errors, not a full disk."""
 _UNWRITABLE = {sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY}
 
 Migrations = tuple[tuple[str, ...], ...]
@@ -309,6 +311,8 @@ def _migrate(connection: sqlite3.Connection, path: Path, migrations: Migrations 
 def _problem(path: Path, error: sqlite3.Error) -> DatabaseProblem:
     if _code(error) in _DAMAGE or type(error) is sqlite3.DatabaseError:
         return DamagedDatabase(path, f"is damaged: {error}")
+    if getattr(error, "sqlite_errorcode", 0) in _NO_ROOM:
+        return DatabaseProblem(path, f"{error}: the disk may be full")
     return DatabaseProblem(path, str(error))
 
 

@@ -73,12 +73,21 @@ class PartResult:
 def execute_part(part: Part, used: Parcel, prepared: Parcel, folder: Path, wanted: Callable[[], bool]) -> PartResult:
     """Execute a part in the worker's own ``folder``. The work ends early when ``wanted`` returns false.
 
-    ``used`` is unpacked once and kept for other parts. Raises ``OSError``.
+    ``used`` is unpacked once and kept for other parts. A worker that cannot store files refuses the part.
     """
+    try:
+        return _executed(part, used, prepared, folder, wanted)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return PartResult(refused=f"cannot execute the study: {where}{error.strerror or error}", host=platform.node())
+
+
+def _executed(part: Part, used: Parcel, prepared: Parcel, folder: Path, wanted: Callable[[], bool]) -> PartResult:
     began, host = monotonic(), platform.node()
     found = list(differences(part.versions, versions()))
     if found:
         return PartResult(refused=f"has {', '.join(found)}", host=host)
+    folder.mkdir(parents=True, exist_ok=True)
     root = unpack(used, folder / "files")
     work = Path(tempfile.mkdtemp(prefix="part-", dir=folder))
     try:
