@@ -85,7 +85,7 @@ def test_an_unknown_condition_is_reported_as_well() -> None:
     [
         ("<robot> moves slower than 0.25", "0.25", "a number needs a unit here: write for example '0.25 m/s'"),
         ("<robot> is nearer than 3 to <part>", "3", "a number needs a unit here: write for example '3 m'"),
-        ("<part> is tilted less than 10", "10", "a number needs a unit here: write for example '10 rad'"),
+        ("<part> is tilted less than 10", "10", "a number needs a unit here: write for example '10 deg'"),
         ("<robot> is nearer than '3 m' to <part>", "'3 m'", "a quantity is written without quotes"),
         ('<part> is located at "goal"', '"goal"', "names must be in angle brackets, without quotes"),
     ],

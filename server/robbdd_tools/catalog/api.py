@@ -230,7 +230,8 @@ class Behaviour:
     """A behaviour that an agent executes in ``When``.
 
     ``events`` are the names of the events that it emits, in order. The first and the last of them delimit its duration.
-    ``aliases`` are other forms of ``phrase`` with the same slots.
+    ``aliases`` are other forms of ``phrase`` with the same slots. ``synonyms`` are wrong words that users write for it;
+    the error message then names the behaviour.
     """
 
     name: str
@@ -241,6 +242,7 @@ class Behaviour:
     events: tuple[str, ...]
     doc: str
     aliases: tuple[str, ...] = ()
+    synonyms: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,13 +6,16 @@ import re
 from dataclasses import replace
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.base.quantity_units import UNITS
+from robbdd_tools.base.quantity_units import units_of
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.joined import joining_word
 from robbdd_tools.syntax.near_misses import near_miss, other_file
 from robbdd_tools.syntax.parsed import Expectation, Rejected
+from robbdd_tools.syntax.quantified_sets import set_in_quantifier
 from robbdd_tools.syntax.recover import Fault
+from robbdd_tools.syntax.setting_units import unit_of_setting
+from robbdd_tools.syntax.unknown_behaviours import behaviour_fault
 from robbdd_tools.syntax.unknown_phrases import phrase_fault
 
 LONGEST_WORD = 40
@@ -89,7 +92,8 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     joining = joining_word(text, rejected.offset) if ":" in rejected.expected.literals else None
     if joining is not None:
         return SyntaxFault(joining, _UNJOINED.format(text[joining.start : joining.end]))
-    known = phrase_fault(text, rejected) or _without_unit(text, rejected) or near_miss(text, rejected)
+    explaining = (phrase_fault, behaviour_fault, _without_unit, unit_of_setting, set_in_quantifier, near_miss)
+    known = next((fault for explain in explaining if (fault := explain(text, rejected)) is not None), None)
     if known is not None:
         return known
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
@@ -135,7 +139,8 @@ def _without_unit(text: str, rejected: Rejected) -> SyntaxFault | None:
     if number is not None:
         unit = _unit_after(text[: rejected.offset])
         message = f"a number needs a unit here: write for example '{number[0]} {unit}', or name a variable"
-        return SyntaxFault(Span(*number.span()), message)
+        span, written = Span(*number.span()), f"{number[0]} {unit}"
+        return SyntaxFault(span, message, SyntaxFix(span, written, f"Change to '{written}'"))
     quoted = _QUOTED_QUANTITY.match(text, rejected.offset)
     if quoted is None:
         return None
@@ -151,7 +156,7 @@ def _unit_after(head: str) -> str:
         own = before.rpartition(">")[2].strip()
         slot = next((slot for slot in word.slots if slot.name == after.partition(" ")[0]), None)
         if slot is not None and own and words.endswith(own):
-            return next((unit for unit, (dimension, _) in UNITS.items() if dimension == slot.dimension), "m")
+            return "deg" if slot.dimension == "angle" else units_of(slot.dimension)[0]
     return "m"
 
 

@@ -18,6 +18,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.joined import joined_clauses
 from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
+from robbdd_tools.syntax.quantified_sets import written_set
 from robbdd_tools.syntax.unknown_phrases import unknown_phrase
 
 MAX_FAULTS = 12
@@ -135,6 +136,7 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     literals = sorted(stopped.expected.literals)
     yield from _parentheses(language, text, stopped)
     yield from _text_predicate(text, stopped)
+    yield from _written_set(text, offset)
     yield from _single_values(text, offset)
     yield from _missing_column(text, stopped)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
@@ -157,6 +159,15 @@ def _text_predicate(text: str, stopped: Rejected) -> Iterator[Repair]:
         blank = NOTHING.ljust(found.whole.end - found.whole.start)
         repaired = text[: found.whole.start] + blank + text[found.whole.end :]
         yield Repair(repaired, found.words, None, is_certain=True)
+
+
+def _written_set(text: str, offset: int) -> Iterator[Repair]:
+    """Put the placeholder of a missing name in place of a set that is written out in a quantifier."""
+    found = written_set(text, offset)
+    if found is not None:
+        blank = f"<{HOLE}>".ljust(found.span.end - found.span.start)
+        if len(blank) == found.span.end - found.span.start:
+            yield Repair(text[: found.span.start] + blank + text[found.span.end :], found.span, None, is_certain=True)
 
 
 def _single_values(text: str, offset: int) -> Iterator[Repair]:

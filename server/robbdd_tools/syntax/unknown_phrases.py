@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import cache
@@ -70,7 +70,7 @@ def unknown_phrase(text: str, rejected: Rejected) -> UnknownPhrase | None:
     if subject is None or subject.end() > offset:
         return None
     words = Span(subject.end(), end)
-    nearest = _nearest(text[words.start : words.end])
+    nearest = nearest_phrases(text[words.start : words.end], _phrases())
     fix = next((fix for _, fix in nearest[:1] if fix), None)
     whole = Span(subject.start("subject"), end)
     may_be_text = begin[0][0].startswith("holds")
@@ -111,13 +111,16 @@ def _phrases() -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple((phrase, tuple(map(str, word.synonyms))) for phrase, word in every if phrase.startswith("<"))
 
 
-def _nearest(written: str) -> list[tuple[str, str | None]]:
-    """Return the nearest phrases, each with the text that replaces the written one if the values fit."""
+def nearest_phrases(written: str, phrases: Sequence[tuple[str, tuple[str, ...]]]) -> list[tuple[str, str | None]]:
+    """Return the nearest of some phrases, each with the text that replaces the written one if the values fit.
+
+    ``written`` is the text after the subject. Each phrase comes with its synonyms.
+    """
     pieces = list(_PIECE.finditer(written))
     words = " ".join(piece["word"] for piece in pieces if piece["word"]).lower()
     values = [(piece.lastgroup or "", piece[0]) for piece in pieces if not piece["word"]]
     ranked: list[tuple[float, str, str | None]] = []
-    for phrase, synonyms in _phrases():
+    for phrase, synonyms in phrases:
         own = list(_OF_PHRASE.finditer(phrase))[1:]
         ratio = SequenceMatcher(None, words, " ".join(one["word"] for one in own if one["word"])).ratio()
         said = max((len(one) for one in synonyms if re.search(rf"(?<!\w){re.escape(one)}(?!\w)", words)), default=0)

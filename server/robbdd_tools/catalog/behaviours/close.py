@@ -13,4 +13,5 @@ CLOSE = Behaviour(
     sentence='"{agent}" closes "{object}"',
     events=("close-start", "close-end"),
     doc="The agent grips the handle of a drawer, door or lid, moves it until the thing is closed, and releases it.",
+    synonyms=("shuts", "locks"),
 )

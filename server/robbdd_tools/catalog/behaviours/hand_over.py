@@ -17,4 +17,5 @@ HAND_OVER = Behaviour(
         "The agent puts the object down at a place of a table that both arms reach, and makes room; then the receiver "
         "grasps and lifts it."
     ),
+    synonyms=("gives", "passes", "handover", "transfers"),
 )

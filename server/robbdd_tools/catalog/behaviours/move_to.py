@@ -13,4 +13,5 @@ MOVE_TO = Behaviour(
     sentence='"{agent}" moves to "{workspace}"',
     events=("move-start", "move-end"),
     doc="The mobile base of the agent drives, with what the arm holds, to where the arm reaches the workspace.",
+    synonyms=("goes", "drives", "navigates", "travels", "walks"),
 )

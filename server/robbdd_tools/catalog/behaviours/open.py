@@ -13,4 +13,5 @@ OPEN = Behaviour(
     sentence='"{agent}" opens "{object}"',
     events=("open-start", "open-end"),
     doc="The agent grips the handle of a drawer, door or lid, moves it until the thing is open, and releases it.",
+    synonyms=("pulls", "unlocks"),
 )

@@ -13,4 +13,5 @@ PICK = Behaviour(
     sentence='"{agent}" picks "{object}"',
     events=("pick-start", "pick-end"),
     doc="The agent grasps the object at its place and lifts it.",
+    synonyms=("grabs", "grips", "grasps", "takes", "lifts", "fetches", "collects"),
 )

@@ -15,4 +15,5 @@ PICK_PLACE = Behaviour(
     events=("pick-start", "pick-end", "place-start", "place-end"),
     doc="The agent grasps the object at its place, carries it to the workspace and releases it there.",
     aliases=("<agent> picks <object> and places it at <workspace>",),
+    synonyms=("brings", "carries", "transports", "delivers", "loads", "puts", "grabs and", "takes and"),
 )

@@ -14,4 +14,5 @@ PLACE = Behaviour(
     sentence='"{agent}" places "{object}" at "{workspace}"',
     events=("place-start", "place-end"),
     doc="The agent carries the held object to the workspace and releases it there.",
+    synonyms=("puts", "sets", "drops", "lays", "releases", "deposits"),
 )

@@ -14,4 +14,5 @@ PUSH = Behaviour(
     sentence='"{agent}" pushes "{object}" to "{workspace}"',
     events=("push-start", "push-end"),
     doc="The agent pushes the object over its support with the closed gripper until it is in the workspace.",
+    synonyms=("shoves", "slides", "presses", "pushes away"),
 )

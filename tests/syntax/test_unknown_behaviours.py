@@ -1,0 +1,120 @@
+"""Unknown behaviours, units of settings, missing units and written-out sets of quantifiers are explained and fixed."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit import MODEL
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.syntax.declaration import SyntaxFault
+from robbdd_tools.syntax.parse import parse_declaration
+
+TEMPLATE = MODEL[MODEL.index("Scenario Template") : MODEL.index("User Story")]
+GIVEN = "on-bench: holds(<part> is located at <goal>, before <pick-start>)"
+ACTION = "<robot> picks <part> and places at <goal>"
+
+
+def faults(text: str) -> tuple[SyntaxFault, ...]:
+    return parse_declaration("bdd", text).faults
+
+
+def fixed(text: str, fault: SyntaxFault) -> str:
+    assert fault.fix is not None
+    return text[: fault.fix.span.start] + fault.fix.text + text[fault.fix.span.end :]
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "written", "nearest", "fix"),
+    [
+        ("<robot> grabs <part>", "grabs <part>", "<agent> picks <object>", None),
+        ("<robot> picks <part> and puts it at <goal>", None, "<agent> picks <object> and places at <workspace>", None),
+        ("<robot> piks <part>", "piks <part>", "<agent> picks <object>", "picks <part>"),
+        ("<robot> drives to <goal>", "drives to <goal>", "<agent> moves to <workspace>", None),
+        ("<robot> shoves <part> to <goal>", None, "<agent> pushes <object> to <workspace>", None),
+        ("<robot> shuts <part>", None, "<agent> closes <object>", None),
+        ("<robot> gives <part> to <other>", None, "<agent> hands over <object> to <receiver>", None),
+        ("<robot> dances", "dances", None, None),
+    ],
+)
+def test_the_nearest_behaviours_are_named(
+    behaviour: str, written: str | None, nearest: str | None, fix: str | None
+) -> None:
+    text = TEMPLATE.replace(ACTION, behaviour)
+    assert text != TEMPLATE
+    fault = faults(text)[0]
+    assert text[fault.span.start : fault.span.end] == (written or behaviour.partition("> ")[2])
+    listed = fault.message.partition(": ")[2]
+    if nearest is None:
+        phrases = [word.phrase for word in load_catalog().behaviours.values()]
+        assert listed == f"there are {', '.join(map(repr, phrases))}"
+    else:
+        assert listed.removeprefix("the nearest is ").removeprefix("the nearest are ").split("'")[1] == nearest
+    if fix is not None:
+        assert fault.fix is not None
+        assert fault.fix.text == fix
+        assert faults(fixed(text, fault)) == ()
+
+
+def test_the_behaviour_of_a_loop_and_a_further_behaviour_are_explained() -> None:
+    further = TEMPLATE.replace(
+        f"{ACTION}\n        }}",
+        f"{ACTION}\n        }}\n        then <robot> drops <part> from <pick-start> until <end>",
+    )
+    (fault,) = faults(further)
+    assert further[fault.span.start : fault.span.end] == "drops <part>"
+    assert "'<agent> places <object> at <workspace>'" in fault.message
+
+
+def test_no_synonym_is_the_verb_of_a_behaviour() -> None:
+    behaviours = load_catalog().behaviours.values()
+    verbs = {word.phrase.partition("> ")[2].partition(" ")[0] for word in behaviours}
+    assert verbs.isdisjoint(synonym for word in behaviours for synonym in word.synonyms)
+
+
+@pytest.mark.parametrize(
+    ("phrase", "found", "message", "written"),
+    [
+        ("<robot> has config travel_height = 0.3 m", "m", "is a number in m, without a unit: write '0.3'", "= 0.3,"),
+        ("<robot> has config travel_height = 30 cm", "cm", "is a number in m, without a unit: write '0.3'", "= 0.3,"),
+        ("<part> has config mass = 45 g", "g", "is a number in kg, without a unit: write '0.045'", "= 0.045,"),
+        ("<part> has config height_scale = 0.9 m", "m", "is a number, without a unit: write '0.9'", "= 0.9,"),
+        ("<part> has config own = 3 N", "N", "'own' is a number, without a unit: write '3'", "= 3,"),
+        ("<robot> has config travel_height = 0.3 s", "s", "is a number in m, without a unit: write it in m", None),
+        ("<robot> moves slower than 0.25", "0.25", "a number needs a unit here: write for example", "0.25 m/s,"),
+        ("<part> is tilted less than 10", "10", "a number needs a unit here: write for example", "10 deg,"),
+        ("<robot> is nearer than 3 to <part>", "3", "a number needs a unit here: write for example", "3 m to"),
+    ],
+)
+def test_units_are_removed_inserted_or_converted(phrase: str, found: str, message: str, written: str | None) -> None:
+    text = TEMPLATE.replace(GIVEN, f"on-bench: holds({phrase}, before <pick-start>)")
+    (fault,) = faults(text)
+    assert text[fault.span.start : fault.span.end] == found
+    assert message in fault.message
+    if written is None:
+        assert fault.fix is None
+        return
+    assert written in fixed(text, fault)
+    assert faults(fixed(text, fault)) == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (GIVEN, f"( var x exists in {{ <a.b>, <a.c> }} ) such that {{ {GIVEN} }}"),
+        (f"    Given:\n        {GIVEN}\n    When:", "    for all ( var x in { <a.b>, <a.c> } ) {\n    When:"),
+    ],
+)
+def test_a_set_that_is_written_out_gets_a_name(old: str, new: str) -> None:
+    assert old in TEMPLATE
+    text = TEMPLATE.replace(old, new)
+    if "for all" in new:
+        text = text.replace("    Then:", "    }\n    Then:")
+    (fault,) = faults(text)
+    assert text[fault.span.start : fault.span.end] == "{ <a.b>, <a.c> }"
+    declared = "const set (ns=t) x-values { <a.b>, <a.c> }"
+    assert fault.message == (f"a quantifier runs over a named set: declare '{declared}', and write '<x-values>' here")
+    written = fixed(text, fault)
+    above, _, template = written.partition("\n\n")
+    assert above == declared
+    assert faults(above) == () == faults(template)
+    assert "in <x-values> )" in template
