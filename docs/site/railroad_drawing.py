@@ -32,6 +32,11 @@ LEXICAL: Mapping[str, str] = {
     "PropertyName": "name",
     "ModuleName": "module",
     "PhraseWord": "word",
+    "StudyText": '"text"',
+    "StudyNumber": "number",
+    "StudyName": "name",
+    "StudyReference": "<name>",
+    "StudyUnit": "unit",
 }
 """Labels of rules that only match text."""
 REFERENCE = re.compile(r"(\w+)Ref")

@@ -23,7 +23,7 @@ from robbdd_tools.catalog.term_prefixes import PREFIXES
 from robbdd_tools.features.sentences import word_meaning
 from robbdd_tools.features.study_words import FORMS
 from robbdd_tools.syntax import grammar
-from robbdd_tools.syntax.constructs import Construct, constructs, literals, read_rules, rules_of
+from robbdd_tools.syntax.constructs import Construct, constructs, literals, read_rules, rules_of, uses
 from robbdd_tools.syntax.phrases import ACTION_RULE, PREDICATE_RULE
 
 FOLDER = ROOT / "docs" / "language"
@@ -52,7 +52,7 @@ RULE = r"((?:^//[^\n]*\n)*)^{}:((?:[^;'/]|'[^']*'|/(?:\\.|[^/\\])+/)*;)"
 def files() -> Mapping[Path, str]:
     """Return the texts of all pages and diagrams."""
     found: dict[Path, str] = {FOLDER / "README.md": overview(), FOLDER / "words.md": words_page()}
-    found[FOLDER / "studies.md"] = studies_page()
+    found |= studies_pages()
     for source, (name, title, about) in PAGES.items():
         sections = [f"# {title}\n\n{about}\n\n{MADE}"]
         for construct in constructs(source):
@@ -215,13 +215,30 @@ def word_section(word: Predicate | Behaviour) -> list[str]:
     return [*lines, *(shown_example(example) if example is not None else ())]
 
 
-def studies_page() -> str:
-    """Return the page of studies."""
+def studies_pages() -> Mapping[Path, str]:
+    """Return the page of studies and its diagrams. A test compares their grammar with the reader of studies."""
+    rules = read_rules("study")
     lines = ["# Studies", "", "A `.study` file states what is executed many times, and when to stop."]
     lines += ["[Campaigns](../campaigns.md) explains how to run one. `docs/site/reference.py` writes this page.", ""]
+    found: dict[Path, str] = {}
     for name, (form, meaning) in FORMS.items():
+        picture = FOLDER / "diagrams" / f"studies-{name.lower()}.svg"
+        shown = [(rule, rules[rule]) for rule in _rules_of_setting(rules, name)]
+        found[picture] = drawing(shown, rules)
+        names = ", ".join(f"`{rule}`" for rule, _ in shown)
         lines += [f"## {name}", "", "```text", form, "```", "", meaning, ""]
-    return "\n".join(lines)
+        lines += [f"![Railroad diagram of {names}; the text says the same](diagrams/{picture.name})", ""]
+        lines += code("\n".join(rule_text("study", rule) for rule, _ in shown))
+    return {FOLDER / "studies.md": "\n".join(lines), **found}
+
+
+def _rules_of_setting(rules: Mapping[str, grammar.Expression], word: str) -> list[str]:
+    """Return the rule that begins with a word, and the rules that it uses, without those of single tokens."""
+    found = [rule for rule, body in rules.items() if next(iter(literals(body)), "") == word and rule != "Import"][:1]
+    for rule in found:
+        own = rules[rule]
+        found += [one for one in uses(own) if one not in (*found, *LEXICAL) and rule != "Study"]
+    return found
 
 
 def write() -> None:

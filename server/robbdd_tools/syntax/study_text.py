@@ -1,20 +1,4 @@
-"""Read the text of a ``.study`` file.
-
-::
-
-    file    = { "import" text } "Study" name "{" { setting } "}"
-    setting = "scenarios" ":" "{" "<" name ">" { "," "<" name ">" } "}"
-            | "where" ":" text
-            | ( "first" | "sample" | "pairwise" | "repeat" | "seed" | "batch" ) ":" whole number
-            | "timeout" ":" number "seconds"
-            | "stop" ":" ( "width" number | "rate" number "against" number )
-            | "factor" "scene" ":" "{" text { "," text } "}"
-            | "factor" "bhv" "<" name ">" ":" "{" level { "," level } "}"
-            | "factor" "var" "<" name ">" ":" "from" number [ unit ] "to" number [ unit ]
-            | "traces" ":" ( "failures" | "all" ) whole number "MB"
-            | "block" ":" "repetition"
-            | "design" ":" ( "latin-hypercube" | "sobol" | "grid" ) whole number
-    level   = name | "<" name ">"
+"""Read the text of a ``.study`` file, whose grammar is ``grammar/study.tx``.
 
 The reader continues after an error with the next setting, so that all errors of a file are found at once.
 """
