@@ -54,6 +54,8 @@ DAMAGE: dict[str, list[str]] = {
     "column-set": ["+ lab:column a rbw:PropertyColumn", "+ lab:column rbw:of-set lab:nut"],
     "condition-role": ["- t:at bdd:clause-of", "+ t:at bdd:clause-of t:fetch-scenario-when"],
     "coordination-node-one": ["+ t:pick rbw:coordination-node t:fetch"],
+    "external-node-one": ["+ t:pick rbw:external-node t:fetch", "+ t:pick rbw:external-node t:end"],
+    "external-node-only": ["+ t:pick rbw:external-node t:fetch", "+ t:pick rbw:coordination-node t:fetch"],
     "correct-objects": ["+ lab:tray_ws rbw:correct-for lab:panda"],
     "correct-workspace": ["+ lab:tray rbw:correct-for lab:nut"],
     "during-end": ["- t:drop time:before-event"],

@@ -118,7 +118,7 @@ def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
     when = root.body.parts[0].when if isinstance(root, tree.Template) and not declaration.faults else None
     if isinstance(root, tree.Template) and when is not None and len(list(root.body.behaviours)) == 1:
         use = when.behaviour
-        if use.node is None and use.name.span.start < use.name.span.end:
+        if use.node is None and use.external is None and use.name.span.start < use.name.span.end:
             yield use
 
 

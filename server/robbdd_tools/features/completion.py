@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Span
+from robbdd_tools.features.coordination_nodes import typed_nodes
 from robbdd_tools.features.cursor import Cursor, cursor_at
 from robbdd_tools.features.expected_words import Place, is_accepted, keyword_phrases, place_after
 from robbdd_tools.features.literals import literal_choices, unit_choices
@@ -48,7 +49,7 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
         return complete_study(snapshot, uri, offset)
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None:
-        return list(_in_quotes(uri, analysis, offset))
+        return list(_in_quotes(snapshot, analysis, offset))
     language = language_of(uri)
     end = _word_end(analysis.document.text, offset)
     named = list(_code(uri, cursor, end))
@@ -119,9 +120,9 @@ def _code(uri: str, cursor: Cursor, end: int) -> Iterator[Completion]:
         yield Completion(label, kind, detail, label, cursor.span, whole, rank, origin=(uri, name))
 
 
-def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:
+def _in_quotes(snapshot: Snapshot, file: FileAnalysis, offset: int) -> Iterator[Completion]:
     """Yield proposals for the contents of quotes."""
-    text = file.document.text
+    uri, text = file.document.uri, file.document.text
     rest = re.compile(r"[^\"'\n/]*").match(text, offset)
     for name, kind, facts, typed in part_choices(uri, text, offset):
         start = offset - len(typed)
@@ -133,7 +134,8 @@ def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion
         # A name of a signal is followed by its condition.
         end = offset if closed is None or kind in ("field", "joint") else closed.end()
         yield Completion(name, kind, facts, name, Span(start, offset), Span(start, end), origin=(uri, ""))
-    for name, kind, typed, target in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
+    line = text[text.rfind("\n", 0, offset) + 1 : offset]
+    for name, kind, typed, target in (*quoted(uri, line), *typed_nodes(snapshot, uri, line)):
         start = offset - len(typed)
         whole = Span(start, offset if rest is None else rest.end())
         yield Completion(name, kind, "", name, Span(start, offset), whole, origin=(target, "") if target else None)

@@ -23,13 +23,17 @@ MAX_STATEMENTS = 20
 def describe_statements(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
     """Yield a list, in Markdown, of the statements of imported graphs about a declaration."""
     about = _graph_about(snapshot, definition)
-    if about is None:
-        return
-    lines = [f"- {_sentence(snapshot, one)}" for one in about.statements(definition.iri or "")]
-    if len(lines) > MAX_STATEMENTS:
-        lines[MAX_STATEMENTS:] = [f"- … and {len(lines) - MAX_STATEMENTS} more"]
+    lines = [] if about is None else statement_lines(snapshot, about, definition.iri or "")
     if lines:
         yield "\n".join(lines)
+
+
+def statement_lines(snapshot: Snapshot, graph: ImportedGraph, node: str) -> list[str]:
+    """Return the first statements of a graph about a node, as the entries of a list in Markdown."""
+    lines = [f"- {_sentence(snapshot, one)}" for one in graph.statements(node)]
+    if len(lines) > MAX_STATEMENTS:
+        lines[MAX_STATEMENTS:] = [f"- … and {len(lines) - MAX_STATEMENTS} more"]
+    return lines
 
 
 def describe_graph(snapshot: Snapshot, uri: str) -> str | None:

@@ -10,6 +10,11 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.model_name import part_names
 from robbdd_tools.features.catalog_source import describe_catalog_entry, entry_at, entry_definition
+from robbdd_tools.features.coordination_nodes import (
+    coordination_node_at,
+    coordination_node_definition,
+    describe_coordination_node,
+)
 from robbdd_tools.features.log_help import log_name_at
 from robbdd_tools.features.model_parts_help import (
     describe_file,
@@ -60,6 +65,10 @@ def outside_name_at(snapshot: Snapshot, uri: str, offset: int) -> OutsideName | 
     if in_log is not None:
         span, text = in_log
         return OutsideName(span, lambda: text, lambda: None)
+    node = coordination_node_at(snapshot, uri, offset)
+    if node is not None:
+        describe = partial(describe_coordination_node, snapshot, uri, node[1])
+        return OutsideName(node[0], describe, partial(coordination_node_definition, snapshot, uri, node[1]))
     entry = entry_at(snapshot, uri, offset)
     if entry is not None:
         return OutsideName(entry[0], partial(describe_catalog_entry, entry[1]), partial(entry_definition, entry[1]))
@@ -98,6 +107,8 @@ def _named_in(file: FileAnalysis) -> Iterator[Span]:
                     yield node.attribute.span.shifted(placed.offset)
                 case tree.SystemPath() | tree.RosPath():
                     yield node.path.span.shifted(placed.offset)
+                case tree.BehaviourUse() if node.external is not None:
+                    yield node.external.span.shifted(placed.offset)
                 case tree.CatalogEntry():
                     yield node.name.span.shifted(placed.offset)
                 case _:

@@ -35,6 +35,7 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "field": _KINDS.Field,
     "frame": _KINDS.Reference,
     "joint": _KINDS.Reference,
+    "node": _KINDS.Reference,
     "setting": _KINDS.Property,
     "property": _KINDS.Property,
     "unit": _KINDS.Unit,

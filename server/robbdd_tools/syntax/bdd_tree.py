@@ -160,11 +160,18 @@ class Emission(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class NodeLink(Node):
+    """``node: <…>`` or ``node: "IRI"``: a node of a behaviour tree, or of another coordination model."""
+
+    node: Ref | None
+    external: Text | None
+
+
+@dataclass(frozen=True, slots=True)
 class BehaviourUse(Node):
     """``Behaviour (ns=…) name { duration: … action emits … node: … }``.
 
-    ``duration`` is ``None`` if the published form omits it and the clauses do not imply it. ``node`` is the linked node
-    of a behaviour tree.
+    ``duration`` is ``None`` if the published form omits it and the clauses do not imply it.
     """
 
     namespace: NamespaceArgument | None
@@ -172,7 +179,17 @@ class BehaviourUse(Node):
     duration: During | None
     action: PhraseUse
     emissions: tuple[Emission, ...]
-    node: Ref | None
+    link: NodeLink | None
+
+    @property
+    def node(self) -> Ref | None:
+        """The linked node of a behaviour tree."""
+        return None if self.link is None else self.link.node
+
+    @property
+    def external(self) -> Text | None:
+        """The IRI of the linked node of another coordination model."""
+        return None if self.link is None else self.link.external
 
 
 @dataclass(frozen=True, slots=True)

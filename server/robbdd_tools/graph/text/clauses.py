@@ -251,6 +251,8 @@ class ClauseText:
         duration = self.time(During(clause.start, clause.end))
         head = f"Behaviour (ns={names.prefix(namespace)}) {name}"
         link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"
+        for external in names.records.iris(names.records.all(node, "rbw:external-node"))[:1] if not link else ():
+            link = f"\n    node: {quoted(external)}"
         moments = [f"\n    emits {moment} as {names.lazily(event, 'event')}" for moment, event in clause.emits]
         for index, emission in enumerate(items_of(names.records, clause.iri, "rbw:emission-list")):
             self._named(Iri(str(emission)), "emits", f"{path}.{index}")

@@ -65,6 +65,9 @@ def _nodes(parts: Iterable[tree.TreeNode], named: dict[tree.TreeComposite | tree
 
 
 def link_behaviour(frame: Frame, behaviour: URIRef, use: tree.BehaviourUse) -> None:
-    """Link a behaviour to the node of a behaviour tree that it names, if any."""
+    """Link a behaviour to the node of a behaviour tree, or of another coordination model, that it names, if any."""
     if use.node is not None:
         frame.sink.add(behaviour, "rbw:coordination-node", frame.target(use.node), frame.at(use.node))
+    if use.external is not None:
+        node = frame.sink.iri(use.external.value)
+        frame.sink.add(behaviour, "rbw:external-node", node, frame.at(use.external))
