@@ -123,11 +123,13 @@ def release(shell: Shell) -> None:
 def test_the_action_passes_a_cell_that_holds_and_keeps_its_results(shell: Shell, tmp_path: Path) -> None:
     host = Host(shell, tmp_path, {"models": "models"})
     assert host.failed == ""
-    assert "1 scenario: 1 hold, 0 violated, 0 unknown" in host.summary.read_text(encoding="utf-8")
+    summary = host.summary.read_text(encoding="utf-8")
+    assert summary.startswith("## ✅ models: run 1\n\n**1 of 1 executions hold**")
     assert {path.name for path in (tmp_path / "cell" / "robbdd-results").iterdir()} == {
         "junit.xml",
         "results.json",
         "run.txt",
+        "summary.md",
     }
     assert [name.partition("@")[0] for name in host.used] == ["actions/setup-python", "actions/upload-artifact"]
     noted = (tmp_path / "installed").read_text(encoding="utf-8").splitlines()
@@ -140,7 +142,9 @@ def test_the_action_fails_at_a_violated_clause_after_its_results_are_kept(shell:
     violate(tmp_path / "cell")
     host = Host(shell, tmp_path, {"models": "models"})
     assert (host.failed, len(host.used)) == ("Judge", 2)
-    assert "1 violated" in host.summary.read_text(encoding="utf-8")
+    summary = host.summary.read_text(encoding="utf-8")
+    assert "1 violated" in summary
+    assert "✗ at-goal | −" in summary
 
 
 def test_the_action_compares_with_a_baseline(shell: Shell, tmp_path: Path) -> None:
@@ -211,7 +215,7 @@ def test_the_hooks_check_and_format_the_files_they_are_given(shell: Shell, tmp_p
 
 def test_the_commands_of_the_page(shell: Shell, tmp_path: Path) -> None:
     commands = [line for kind, block in BLOCKS if not kind for line in block.splitlines()]
-    assert len(commands) == 10
+    assert len(commands) == 11
     (tmp_path / "cell" / "robbdd.toml").touch()  # the root of the project, as a repository's is: its runs are kept here
     for command in commands:
         done = shell(command.replace("--repeat 30", "--repeat 1"))

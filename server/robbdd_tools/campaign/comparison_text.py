@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from robbdd_tools.campaign.markdown_text import escaped, markdown_table
 from robbdd_tools.campaign.rates import executions_needed, pairs_needed
 from robbdd_tools.campaign.run_comparison import Change, ClauseEffect, Decision, RunComparison
 from robbdd_tools.monitor.verdict import Outcome
@@ -100,12 +101,12 @@ def advice(found: RunComparison, accepted: float | None) -> str:
 
 def markdown(title: str, found: RunComparison, notes: Sequence[str]) -> str:
     """Return the comparison as a Markdown document."""
-    rows = "\n".join(f"| {' | '.join(map(_escaped, cells(effect)))} |" for effect in found.effects)
-    listed = "".join(f"- {_escaped(note)}\n" for note in notes)
+    rows = (list(map(escaped, cells(effect))) for effect in found.effects)
+    listed = "".join(f"- {escaped(note)}\n" for note in notes)
     return (
-        f"## {_escaped(title)}\n\n**{_escaped(conclusion(found))}**\n\n"
+        f"## {escaped(title)}\n\n**{escaped(conclusion(found))}**\n\n"
         f"{method_words(found)}; intervals of {found.level:.0%}.\n\n"
-        f"{listed}\n| {' | '.join(HEADER)} |\n|{'---|' * len(HEADER)}\n{rows}\n"
+        f"{listed}\n{markdown_table(HEADER, rows)}\n"
     )
 
 
@@ -156,8 +157,3 @@ def _margins(effect: MarginEffect) -> str:
 
 def _number(value: float) -> str:
     return f"{value:g}"
-
-
-def _escaped(text: str) -> str:
-    """Escape characters that Markdown would interpret in a cell."""
-    return "".join(f"\\{letter}" if letter in "\\|*_`[]<>#" else letter for letter in text)

@@ -70,7 +70,10 @@ class ClauseRow:
 
 @dataclass(frozen=True, slots=True)
 class JudgedRow:
-    """A clause of one execution: its verdict, margin and reason in words, and the plot of its margin as SVG."""
+    """A clause of one execution: its verdict, margin and reason in words, and the plot of its margin as SVG.
+
+    The reason of a violation begins with its instant.
+    """
 
     name: str
     sentence: str
@@ -190,6 +193,11 @@ def _failed_row(source: ReportSource, result: ExecutionResult) -> FailedRow:
     return FailedRow(result.name, values, result.verdict, result.seed, source.command(result), clauses, moment)
 
 
+def _reason(clause: ClauseResult) -> str:
+    at = "" if clause.at is None or clause.verdict is not Outcome.VIOLATED else f"at {clause.at:.2f} s"
+    return ": ".join(filter(None, (at, clause.reason)))
+
+
 def _judged_rows(result: ExecutionResult, lines: Sequence[int], curves: Mapping[str, object]) -> Iterator[JudgedRow]:
     for clause, line in zip(result.clauses, lines, strict=False):
         drawn = ""
@@ -200,6 +208,6 @@ def _judged_rows(result: ExecutionResult, lines: Sequence[int], curves: Mapping[
             plain_sentence(clause.sentence),
             clause.verdict,
             margin(clause.margin, clause.unit),
-            clause.reason,
+            _reason(clause),
             drawn,
         )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.campaign.study_executions import study_executions
@@ -62,7 +64,9 @@ def run_report(run: PastRun) -> ReportSource:
             return {}, ()
         return kept, tuple(clause.line for clause in run.place.manifest().scenarios[result.index].clauses)
 
-    title = f"{record.path}: run {run.number}" if run.number else record.path
+    # The root of a project is called as its folder.
+    name = Path(os.path.normpath(run.folder / record.origin)).name if record.path == "." else record.path
+    title = f"{name}: run {run.number}" if run.number else name
     environment = tuple((name, value) for name, value in rows if value)
     required = read_requirements(run.folder)
     state = run.status.words()

@@ -121,10 +121,11 @@ def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
 
 
 def _add_report(commands: AddsCommands) -> argparse.ArgumentParser:
-    report = commands.add_parser("report", help="write the report of a stored run or a study as one HTML page")
+    report = commands.add_parser("report", help="write the report of a stored run or a study: a page, or a summary")
     report.add_argument("run", metavar="RUN|FILE.study", help=f"{RUN}; or a study")
     report.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the run's project")
-    report.add_argument("-o", "--output", metavar="FILE.html", type=Path, required=True)
+    text = "a page that needs no network or, for continuous integration, a Markdown summary"
+    report.add_argument("-o", "--output", metavar="FILE.html|FILE.md", type=Path, required=True, help=text)
     text = "neither pictures nor replays of the worst executions"
     report.add_argument("--no-pictures", action="store_true", help=text)
     text = "execute the N worst executions of a study again, for their pictures and replays"

@@ -1,4 +1,4 @@
-"""``robbdd report``: write the report of a stored run or of a study as one HTML page."""
+"""``robbdd report``: write the report of a stored run or of a study as one HTML page, or as a Markdown summary."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.campaign.report_data import worst
+from robbdd_tools.campaign.report_markdown import report_markdown
 from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.report_page import report_page
 from robbdd_tools.campaign.report_source import run_report, study_report, with_traces
@@ -25,12 +26,15 @@ from robbdd_tools.workbench.stored import find_run
 if TYPE_CHECKING:
     from robbdd_tools.campaign.report_source import ReportSource
 
+MARKDOWN = (".md", ".markdown")
+
 
 @dataclass(frozen=True, slots=True)
 class ReportOptions:
     """The options of ``robbdd report``.
 
     - ``word``: names a run, a ``.study`` file or a folder with its results; ``path`` is in the run's project.
+    - ``output``: a Markdown summary if its suffix is one of ``MARKDOWN``, else an HTML page.
     - ``again``: how many of a study's worst executions are executed again, under ``policy``, for pictures and replays.
     """
 
@@ -49,11 +53,14 @@ def write_report(options: ReportOptions) -> int:
     if options.again and not (options.word.endswith(SUFFIX) and Path(options.word).is_file()):
         return fail("--again executes a study: name its file (FILE.study)")
     write = _study if is_study else _run
+    is_summary = options.output.suffix.lower() in MARKDOWN
+    options = replace(options, pictures=options.pictures and not is_summary)
 
     def work() -> int:
         moments = Moments()
         source = write(options, moments)
-        replace_file(options.output, report_page(source, moments.document(), moments.problem))
+        page = report_markdown(source) if is_summary else report_page(source, moments.document(), moments.problem)
+        replace_file(options.output, page)
         if moments.problem:
             print_note(f"there are no pictures: {moments.problem}")
         print_note(f"the report is in {options.output}")
