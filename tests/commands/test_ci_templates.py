@@ -215,7 +215,7 @@ def test_the_hooks_check_and_format_the_files_they_are_given(shell: Shell, tmp_p
 
 def test_the_commands_of_the_page(shell: Shell, tmp_path: Path) -> None:
     commands = [line for kind, block in BLOCKS if not kind for line in block.splitlines()]
-    assert len(commands) == 11
+    assert len(commands) == 13
     (tmp_path / "cell" / "robbdd.toml").touch()  # the root of the project, as a repository's is: its runs are kept here
     for command in commands:
         done = shell(command.replace("--repeat 30", "--repeat 1"))

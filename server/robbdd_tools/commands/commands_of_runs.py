@@ -138,12 +138,15 @@ def _add_report(commands: AddsCommands) -> argparse.ArgumentParser:
 
 
 def _add_export(commands: AddsCommands) -> argparse.ArgumentParser:
-    export = commands.add_parser("export", help="write a stored run as bags of ROS 2 or as results for Allure Report")
+    export = commands.add_parser("export", help="write a stored run for other programs: ROS 2, Allure Report, Cucumber")
     export.add_argument("run", metavar="RUN", help=RUN)
     form = export.add_mutually_exclusive_group(required=True)
     form.add_argument("--ros2", action="store_true", help="as a rosbag2: transforms, joints, events")
     form.add_argument("--allure", action="store_true", help="results for Allure Report: clauses, margins, pictures")
-    export.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="a new folder")
+    text = "Cucumber Messages (NDJSON): features, verdicts, margins, pictures"
+    form.add_argument("--messages", action="store_true", help=text)
+    text = "a new folder; for --messages, a file"
+    export.add_argument("-o", "--output", metavar="DIR|FILE.ndjson", type=Path, required=True, help=text)
     export.add_argument("--mcap", action="store_true", help="store messages as MCAP instead of SQLite")
     export.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
     allow_store(export)
@@ -215,8 +218,10 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.export_run import ExportOptions, export_allure, export_run
+    from robbdd_tools.commands.export_run import ExportOptions, export_allure, export_messages, export_run
 
     chosen = options.scenario or ()
     wanted = ExportOptions(options.run, options.output, chosen, options.store, options.mcap)
+    if options.messages:
+        return export_messages(wanted)
     return export_allure(wanted) if options.allure else export_run(wanted)
