@@ -13,6 +13,7 @@ from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.cli import main
 from robbdd_tools.workbench.named_files import NotAModel
 
+COVERED = "a study covers levels, pairs, clauses, events, predicates, each once, such as 'pairs 90 %'"
 HEAD = 'import "m.bdd"\nStudy s {\n'
 
 
@@ -125,6 +126,11 @@ def test_implementations_of_the_model_are_levels(tmp_path: Path) -> None:
         ("traces: some 3 MB", "3:9 a study keeps the traces of 'failures' or of 'all', such as 'failures 500 MB'"),
         ("traces: all 0 MB", "3:13 expected a whole number from 1 to 1000000, not 0"),
         ("traces: all 3", "3:14 expected the unit 'MB', not '}'"),
+        ("cover: 90 %", "3:8 expected '{', not '90'"),
+        ("cover: { laps 9 % }", f"3:10 {COVERED}"),
+        ("cover: { pairs 9 %, pairs 8 % }", f"3:21 {COVERED}"),
+        ("cover: { pairs 101 % }", "3:16 expected a number from 1 to 100, not 101"),
+        ("cover: { pairs 90 }", "3:19 expected the unit '%', not '}'"),
         ("timeout: 3", "3:11 expected the unit 'seconds', not '}'"),
         ("repeat: 1 repeat: 2", "3:11 'repeat' is given twice: remove one of them"),
         ("first: 1 sample: 2", "3:10 give only one of 'first' and 'sample'"),

@@ -83,6 +83,10 @@ def test_the_settings_that_are_missing_are_proposed() -> None:
         ("stop: rate 0.9 against $0", []),
         ("timeout: 20 $0", ["seconds"]),
         ("repeat: $0", []),
+        ("cover: { $0", ["levels", "pairs", "clauses", "events", "predicates"]),
+        ("cover: { pairs 90 %, cl$0", ["levels", "clauses", "events", "predicates"]),
+        ("cover: { pairs $0", []),
+        ("cover: { pairs 90 $0", ["%"]),
         ("scenarios: { $0 }", ["bench-to-tray"]),
         ("scenarios: { <bench-to-tray>, $0 }", []),
         ("scenarios $0", []),
@@ -102,6 +106,7 @@ def test_a_setting_may_follow_each_complete_one() -> None:
         "stop: rate 0.9 against 0.8",
         "timeout: 3 seconds",
         "scenarios: { <a> }",
+        "cover: { pairs 90 % }",
         "seed: 1",
     ):
         assert "batch" in labels(f"{HEAD}{setting} $0")

@@ -20,7 +20,7 @@ PARSER = Compiled(grammar.read_grammar(grammar_text("study")), "StudyFile")
 SETTING = RULES["StudySetting"]
 VALUES = re.compile(
     r"given twice|give only one|a whole number from|is a number from|power of two|between 0 and 1|has to be below"
-    r"|lower to its upper|one unit|has a range"
+    r"|lower to its upper|one unit|has a range|each once"
 )
 """Messages of the reader about values, which no grammar states."""
 NUMBERS = {
@@ -28,6 +28,7 @@ NUMBERS = {
     "Stop.width": "0.05",
     "Stop.rate": "0.9",
     "Stop.against": "0.8",
+    "StudyGoal.share": "90",
     "RangeFactor.low": "-1.5",
 }
 TEXTS = {"StudyText": ('"a.bdd"', "'b'"), "StudyName": ("pick-place", "Study", "x_1"), "StudyUnit": ("m/s", "%")}
@@ -76,8 +77,13 @@ def words(expression: grammar.Expression, random: Random, rule: str) -> list[str
             one = words(value, random, rule)
             if operator != "+=":
                 return one
-            others = {word for _ in range(2) for word in words(value, random, rule)} - set(one) if separator else set()
-            return [*one, *(word for other in sorted(others) for word in (",", other))]
+            # No element of a list may be stated twice.
+            others = {
+                first: [first, *rest]
+                for _ in range(2 if separator else 0)
+                for first, *rest in [words(value, random, rule)]
+            }
+            return [*one, *(word for first in sorted(others) if first != one[0] for word in (",", *others[first]))]
 
 
 def study(random: Random) -> list[str]:

@@ -14,11 +14,14 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.report import SIGNS
 
 if TYPE_CHECKING:
+    from robbdd_tools.campaign.coverage import KindCoverage
     from robbdd_tools.campaign.report_data import ClauseRow, Counts, Factor, FailedRow
     from robbdd_tools.campaign.report_source import ReportSource
     from robbdd_tools.campaign.requirement_rows import RequirementResult
     from robbdd_tools.workbench.execution_rows import ExecutionResult
 
+MOST_MISSING = 5
+"""At most this many things of each kind that were not exercised are listed."""
 MOST_CLAUSES = 200
 """At most this many clauses are listed. A summary of GitHub has at most 1 MiB."""
 _BADGES = {"holds": "✅", "violated": "❌", "unknown": "❔"}
@@ -43,6 +46,7 @@ def _parts(source: ReportSource) -> Iterator[str]:
         yield f"{_NOT_SHOWN} The run is not complete: {escaped(source.state)}."
     yield from _failed(source, summary)
     yield from _requirements(requirement_results(source.requirements, results))
+    yield from _coverage(source.coverage)
     yield from _clauses(clause_rows(results))
     yield from _factors(factors(results), results)
     rows = [(escaped(name), code(value)) for name, value in source.environment]
@@ -135,6 +139,38 @@ def _requirement_table(found: Sequence[RequirementResult]) -> str:
 
 def _scenario(name: str, held: int, total: int) -> str:
     return f"{escaped(name)}: {f'{held} of {total} hold' if total else 'not run'}"
+
+
+def _coverage(found: Sequence[KindCoverage]) -> Iterator[str]:
+    """Yield the coverage: open if a goal is not met, closed otherwise."""
+    if not found:
+        return
+    rows = [
+        (
+            ("" if one.goal is None else _BADGES["holds" if one.is_met else "violated"]),
+            one.kind,
+            _unbroken(f"{one.exercised:,} of {one.total:,}"),
+            _unbroken(f"{one.share:.1f} %"),
+            "" if one.goal is None else _unbroken(f"{one.goal:g} %"),
+            _missing(one),
+        )
+        for one in found
+    ]
+    head = ("", "coverage", "exercised", "share", "goal", "not exercised")
+    written = markdown_table(head, rows, numbers=(2, 3, 4))
+    unmet = [one.kind for one in found if not one.is_met]
+    if unmet:
+        yield "### Coverage"
+        yield f"Goals not met: {', '.join(unmet)}."
+        yield written
+    else:
+        yield details("Coverage", written)
+
+
+def _missing(one: KindCoverage) -> str:
+    more = len(one.missing) - MOST_MISSING
+    listed = [escaped(name) for name in one.missing[:MOST_MISSING]]
+    return "<br>".join([*listed, *([f"… and {more:,} more"] if more > 0 else [])])
 
 
 def _clauses(found: Sequence[ClauseRow]) -> Iterator[str]:

@@ -45,6 +45,7 @@ def report_page(source: ReportSource, moments: str = "", problem: str = "") -> s
         state=source.state,
         requirements=required,
         shown=requirement_summary(required),
+        coverage=source.coverage,
         clauses=clause_rows(results),
         factors=varied,
         effects=effect_rows(varied, results),

@@ -15,6 +15,7 @@ from robbdd_tools.run.json_documents import NoTrace, stored_curves
 from robbdd_tools.workbench.recorded_requirements import read_requirements, requirements_from
 
 if TYPE_CHECKING:
+    from robbdd_tools.campaign.coverage import KindCoverage
     from robbdd_tools.campaign.report_moments import Moment, Moments
     from robbdd_tools.campaign.study_again import Again
     from robbdd_tools.graph.verified_requirements import LinkedRequirement
@@ -30,6 +31,7 @@ class ReportSource:
     - ``state``: the reason why the results are incomplete; empty if they are complete.
     - ``environment``: names and values, in words.
     - ``command``: returns the command that executes a result again; empty if there is none.
+    - ``coverage``: what a study has exercised of what it could; empty for a run.
     - ``requirements``: the requirements of the models, as recorded when the run or study began.
     - ``curves``: returns the stored margins of a result over time, by feature line, and the feature lines of its
       clauses; both are empty if nothing is stored.
@@ -43,6 +45,7 @@ class ReportSource:
     curves: Callable[[ExecutionResult], tuple[Mapping[str, object], tuple[int, ...]]]
     moments: Mapping[int, Moment] = field(default_factory=dict[int, "Moment"])
     requirements: tuple[LinkedRequirement, ...] = ()
+    coverage: tuple[KindCoverage, ...] = ()
 
 
 def run_report(run: PastRun) -> ReportSource:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
 from robbdd_tools.base.locks import acquire
+from robbdd_tools.campaign.coverage_universe import coverage_universe, universe_text
 from robbdd_tools.campaign.study_batches import Batch, batches
 from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
 from robbdd_tools.campaign.study_place import BATCHES, StudyProblem
@@ -250,8 +251,9 @@ class StudyRun:
             if resumed:
                 raise StudyProblem("the study was never begun: `robbdd study run` begins it")
             facts = {"digest": self._study.digest, "version": __version__}
-            required = requirements_text(self._study.requirements)
-            self.store.note({**facts, "name": self._study.name, "total": str(self.total), "requirements": required})
+            facts |= {"name": self._study.name, "total": str(self.total)}
+            facts |= {"requirements": requirements_text(self._study.requirements)}
+            self.store.note({**facts, "coverable": universe_text(coverage_universe(self._study))})
         elif not resumed:
             finished, _ = self._stored()
             what = f"has {finished} of {self.total} executions"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.processes import CTRL_C, end_requests
+from robbdd_tools.campaign.coverage import coverage_lines, goals_of, study_coverage
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
 from robbdd_tools.campaign.study_cleaning import clean, kept_sizes
 from robbdd_tools.campaign.study_file import Study, load_study
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
 
 RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
 """Ruling on a required pass rate → exit code."""
+MOST_MISSING = 10
+"""At most this many things of each kind that were not exercised are listed."""
 INTERRUPTED = "the study was interrupted"
 UNMEASURED = "no stored run tells how long they take: the first ones will"
 
@@ -66,20 +69,27 @@ class StudyOptions:
 def run_study(options: StudyOptions) -> int:
     """Execute the open executions of a study.
 
-    Returns 0 if all clauses of all executions hold, 1 if not, 2 if the study cannot be executed to its end. With a
-    required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if there are too few executions to decide.
+    Returns 0 if all clauses of all executions hold and all coverage goals are met, 1 if not, 2 if the study cannot be
+    executed to its end. With a required pass rate, returns 0 if it is shown, 1 if it is refuted, 3 if there are too few
+    executions to decide.
     """
     return explained(lambda: _run_study(options))
 
 
 def print_status(path: Path, store: Path | None) -> int:
-    """Print how many executions are finished, and whether a process executes the study."""
-    return explained(lambda: _print_status(study_folder(path, store)))
+    """Print how many executions are finished, and whether a process executes the study.
+
+    Returns 1 if a coverage goal of the study is not met.
+    """
+    return explained(lambda: _print_status(study_folder(path, store), goals_of(path)))
 
 
 def print_rates(path: Path, store: Path | None) -> int:
-    """Print the pass rates of the levels of each factor, then those of each clause."""
-    return explained(lambda: _print_rates(study_folder(path, store)))
+    """Print the pass rates of the levels of each factor, then those of each clause, then the coverage.
+
+    Returns 1 if a coverage goal of the study is not met.
+    """
+    return explained(lambda: _print_rates(study_folder(path, store), goals_of(path)))
 
 
 def export_rows(path: Path, output: Path, store: Path | None) -> int:
@@ -139,13 +149,15 @@ def _run_study(options: StudyOptions) -> int:
         if ended_by or run.ending:
             print_note(f"robbdd: {run.ending}: {_continued(options)}")
             return signal_code(ended_by) if ended_by else FAILED
+        goals = study.content.goals
+        covered = _print_coverage(run.store, goals, most=MOST_MISSING) if goals else OK
         if study.stop is not None:
             ruling = run.ruling()
             print_line("")
             print_line(study.stop.words(ruling))
             if isinstance(study.stop, RatioTest):
-                return RULED.get(ruling, CANNOT_TELL)
-        return OK if all(total == holding for _, total, holding in run.store.outcomes()) else FINDINGS
+                return RULED.get(ruling, CANNOT_TELL) or covered
+        return covered if all(total == holding for _, total, holding in run.store.outcomes()) else FINDINGS
 
 
 @contextmanager
@@ -223,7 +235,7 @@ def _print_results(store: StudyReader) -> None:
         print_line(f"{clause.name}: {clause.holds} of {total} hold, {others}{least}")
 
 
-def _print_status(folder: Path) -> int:
+def _print_status(folder: Path, goals: Mapping[str, float]) -> int:
     with open_results(folder) as store:
         tally = tally_so_far(folder, store)
         state = "in progress" if is_executed(folder) else "not in progress"
@@ -234,13 +246,25 @@ def _print_status(folder: Path) -> int:
         traces, size = kept_sizes(folder)
         if traces:
             print_line(f"{_counted(traces, 'trace')}: {size / MEGABYTE:.1f} MB")
-    return OK
+        return _print_coverage(store, goals) if goals else OK
 
 
-def _print_rates(folder: Path) -> int:
+def _print_rates(folder: Path, goals: Mapping[str, float]) -> int:
     with open_results(folder) as store:
         _print_results(store)
-    return OK
+        print_line("")
+        return _print_coverage(store, goals, most=MOST_MISSING)
+
+
+def _print_coverage(store: StudyReader, goals: Mapping[str, float], most: int = 0) -> int:
+    """Print the coverage and up to ``most`` of what each kind lacks; return the exit code of the goals."""
+    found = study_coverage(store, goals)
+    if not found and goals:
+        print_line("coverage: unknown, as an earlier version began the study without recording what it could exercise")
+        return FINDINGS
+    for line in coverage_lines(found if most else (one for one in found if one.goal is not None), most=most):
+        print_line(line)
+    return OK if all(one.is_met for one in found) else FINDINGS
 
 
 def _export_rows(folder: Path, output: Path) -> int:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.campaign.coverage import goals_of, study_coverage
 from robbdd_tools.campaign.report_data import worst
 from robbdd_tools.campaign.report_markdown import report_markdown
 from robbdd_tools.campaign.report_moments import Moments
@@ -81,7 +82,8 @@ def _study(options: ReportOptions, moments: Moments) -> ReportSource:
         stored_study(options.word, options.store) as store,
         tempfile.TemporaryDirectory(prefix="robbdd-") as folder,
     ):
-        source = study_report(Path(options.word).name, store)
+        found = study_report(Path(options.word).name, store)
+        source = replace(found, coverage=tuple(study_coverage(store, goals_of(Path(options.word)))))
         chosen = [one.index for one in worst(source.results)[: options.again]]
         for again in execute_again(Path(options.word), store, chosen, Path(folder), options.policy) if chosen else ():
             source = with_traces(source, again, moments if options.pictures else None)

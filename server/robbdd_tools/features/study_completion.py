@@ -14,7 +14,7 @@ from robbdd_tools.features.name_completion import Completion
 from robbdd_tools.features.quoted_completion import files_in_quotes
 from robbdd_tools.features.studies import implementations_of_study, scenarios_of_study, variables_of_study
 from robbdd_tools.features.study_words import WHOLE
-from robbdd_tools.syntax.study_content import ALL, DESIGNS, FAILURES
+from robbdd_tools.syntax.study_content import ALL, COVERABLE, DESIGNS, FAILURES
 from robbdd_tools.syntax.study_text import REDUCING, SETTINGS
 from robbdd_tools.syntax.study_tokens import Token, study_tokens
 
@@ -30,6 +30,7 @@ _FORMS = {
     "scenarios": "scenarios: { ",
     "where": 'where: "',
     "factor": "factor ",
+    "cover": "cover: { ",
 }
 """Setting → the text that its proposal inserts."""
 _SCENARIO, _IMPLEMENTATION, _VARIABLE, _BEHAVIOUR, _MODEL, _SCENE = (
@@ -126,6 +127,8 @@ def _expected(tokens: Sequence[Token]) -> Sequence[str]:
     kinds = [one.kind for one in inside[begun[-1] + 1 :]]
     if setting == "factor" and given[:1] == ["var"]:
         return _range_value(inside, given, kinds)
+    if setting == "cover":
+        return _settings(inside) if given[-1:] == ["}"] else _goal_value(given, kinds)
     if setting in ("scenarios", "factor"):
         return _settings(inside) if given[-1:] == ["}"] else _list_value(setting, given)
     if setting == "stop":
@@ -171,6 +174,12 @@ def _range_value(inside: Sequence[Token], given: Sequence[str], kinds: Sequence[
     if "from" in given and "to" not in given:
         return ("to",) if "number" in kinds else ()
     return _settings(inside) if "to" in given and kinds.count("number") == 2 else ()
+
+
+def _goal_value(given: Sequence[str], kinds: Sequence[str]) -> Sequence[str]:
+    if given[-1:] in (["{"], [","]):
+        return [kind for kind in COVERABLE if kind not in given]
+    return ("%",) if kinds[-1:] == ["number"] else ()
 
 
 def _stop_value(given: Sequence[str]) -> Sequence[str]:

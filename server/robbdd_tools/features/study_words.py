@@ -41,6 +41,12 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
             "Keeps traces (MCAP) of the executions that do not hold, or of all, up to N MB in total. "
             "Those of failures have precedence, then the earlier ones. Without it: none.",
         ),
+        "cover": (
+            "cover: { levels N %, pairs N %, clauses N %, events N %, predicates N % }",
+            "Goals: the share of levels of factors and variables, of pairs of levels, of clauses, of the events and of "
+            "the predicates of clauses that the executions must exercise. A clause is exercised if it holds or is "
+            "violated in an execution. If a goal is not met, the exit code is 1.",
+        ),
         "design": (
             "design: latin-hypercube N\ndesign: sobol N\ndesign: grid N",
             "Executes each scenario at N points of the ranges: of a Latin hypercube, or of a Sobol sequence (2, 4, 8, "

@@ -21,6 +21,8 @@ DESIGNS = (LATIN, SOBOL, GRID)
 """Designs that choose the values of ranges."""
 FAILURES, ALL = "failures", "all"
 """A study can keep the traces of these executions."""
+COVERABLE = ("levels", "pairs", "clauses", "events", "predicates")
+"""The kinds of things whose coverage can be a goal of a study."""
 MOST_TRACES = 1_000_000
 """Maximum size of all kept traces in MB."""
 MOST_POINTS = 100_000
@@ -105,6 +107,8 @@ class StudyText:
     traces: KeptTraces | None = None
     is_blocked: bool = False
     """Whether all executions of one repetition have the same seed."""
+    goals: dict[str, float] = field(default_factory=dict[str, float])
+    """Kind of ``COVERABLE`` → the share in percent that the study must exercise."""
     numbers: dict[str, float] = field(default_factory=dict[str, float])
     places: dict[str, Span] = field(default_factory=dict[str, Span])
     """Name of a setting → its place."""

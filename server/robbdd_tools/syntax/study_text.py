@@ -12,6 +12,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.syntax.study_content import (
     ALL,
+    COVERABLE,
     DESIGNS,
     FAILURES,
     MOST_POINTS,
@@ -38,7 +39,7 @@ class _Unexpected(Exception):
 
 REDUCING = ("first", "sample", "pairwise")
 """Settings that reduce the number of scenarios. A study may have only one of them."""
-SETTINGS = ("scenarios", "where", *NUMBERS, "stop", "block", "traces", "design", "factor")
+SETTINGS = ("scenarios", "where", *NUMBERS, "stop", "block", "traces", "design", "cover", "factor")
 """The words that begin a setting."""
 
 
@@ -93,6 +94,7 @@ class _Reader:
             "design": self._design,
             "traces": self._traces,
             "block": self._block,
+            "cover": self._cover,
         }
         if word.text not in SETTINGS or word.kind != "name":
             raise _Unexpected(word, f"'{word.text}' is not a setting of a study{_meant(word.text)}")
@@ -204,6 +206,21 @@ class _Reader:
         self._expect("MB", "the unit 'MB'")
         self._found.traces = KeptTraces(kind.text == FAILURES, int(token.text))
 
+    def _cover(self) -> None:
+        self._expect(":")
+        self._list(self._goal)
+
+    def _goal(self) -> Word:
+        kind = self._take()
+        if kind.text not in COVERABLE or kind.text in self._found.goals:
+            raise _Unexpected(kind, f"a study covers {', '.join(COVERABLE)}, each once, such as 'pairs 90 %'")
+        token = self._kind("number", "a number from 1 to 100")
+        if not 1 <= float(token.text) <= 100:
+            raise _Unexpected(token, f"expected a number from 1 to 100, not {token.text}")
+        self._expect("%", "the unit '%'")
+        self._found.goals[kind.text] = float(token.text)
+        return Word(kind.text, kind.span)
+
     def _add(self, place: Token, factor: Factor) -> None:
         names = [level.words for level in factor.levels]
         twice = next((level for number, level in enumerate(factor.levels) if level.words in names[:number]), None)
@@ -273,14 +290,14 @@ class _Reader:
 
     def _kind(self, kind: str, what: str) -> Token:
         if self._peek().kind != kind:
-            raise _Unexpected(self._peek(), f"expected {what}, not {_shown(self._peek())}")
+            raise _Unexpected(self._peek(), f"expected {what}, not {self._peek().words}")
         return self._take()
 
     def _expect(self, text: str, what: str = "") -> Token:
         token = self._peek()
         if token.text != text or token.kind in ("text", "reference"):
             expected = what or f"'{text}'"
-            raise _Unexpected(token, f"expected {expected}, not {_shown(token)}")
+            raise _Unexpected(token, f"expected {expected}, not {token.words}")
         return self._take()
 
     def _peek(self) -> Token:
@@ -307,10 +324,6 @@ class _Reader:
 
     def _report(self, error: _Unexpected) -> None:
         self.faults.append(Diagnostic(self._uri, error.token.span, Severity.ERROR, "syntax", str(error)))
-
-
-def _shown(token: Token) -> str:
-    return "the end of the file" if token.kind == "end" else f"'{token.text}'"
 
 
 def _meant(text: str) -> str:

@@ -21,6 +21,11 @@ class Token(NamedTuple):
     text: str
     span: Span
 
+    @property
+    def words(self) -> str:
+        """The token as messages name it."""
+        return "the end of the file" if self.kind == "end" else f"'{self.text}'"
+
 
 def study_tokens(text: str) -> Iterator[Token]:
     """Yield the tokens of a study."""
