@@ -103,6 +103,58 @@ def test_margins_decide_if_they_are_asked_for() -> None:
     assert effect.interval.low < -0.005 < effect.interval.high < 0.0
 
 
+@pytest.mark.parametrize(("seed", "few", "enough"), [(0, 5, 6), (1000, 3, 4)])
+def test_margins_that_all_move_alike_show_nothing_until_chance_would_not_align_them(
+    seed: int, few: int, enough: int
+) -> None:
+    """The sign test of pairs needs 6 executions to reject at 5 %, the permutation test of two samples 4 of each."""
+    options = ComparisonOptions(
+        parse_gate(["at_goal not worse than 30 mm", "no clause worse than 99 points"]), 0.95, True
+    )
+    found = compared([0.5] * few, [0.484] * few, options, seed)
+    assert (shown(found), found.effects[-1].margins) == ((Change.UNCLEAR, Decision.UNCLEAR), None)
+    found = compared([0.5] * enough, [0.484] * enough, options, seed)
+    assert found.effects[-1].change is Change.WORSE
+    assert found.effects[-1].margins is not None
+    assert found.effects[-1].margins.interval.high == pytest.approx(-0.016)
+
+
+@pytest.mark.parametrize("paired", [True, False])
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_few_executions_with_margins_of_two_values_raise_no_more_false_alarms_than_stated(
+    count: int, paired: bool
+) -> None:
+    """Times are multiples of a tick, so margins of equal controllers often tie."""
+    chance, alarms, repeats = random.Random(count), 0, 200
+    for _ in range(repeats):
+        before, after = ([0.5 + 0.016 * chance.randrange(2) for _ in range(count)] for _ in range(2))
+        found = compared(before, after, ComparisonOptions(by_margin=True), seed=1000 * (not paired))
+        alarms += any(one.change in (Change.WORSE, Change.BETTER) for one in found.effects)
+    assert alarms / repeats <= 0.05 + 3 * (0.05 * 0.95 / repeats) ** 0.5
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 40])
+@pytest.mark.parametrize(("before", "after"), [(0.1, 0.1), (-0.1, -0.1), (0.1, -0.1), (-0.1, 0.1)])
+@pytest.mark.parametrize("paired", [True, False])
+def test_runs_in_which_everything_passes_or_fails_are_compared(
+    count: int, before: float, after: float, paired: bool
+) -> None:
+    one, other = executions({"c": [before] * count}), executions({"c": [after] * count}, seed=1000 * (not paired))
+    if count == 0:
+        with pytest.raises(NothingShared):
+            compare_results(one, other)
+        return
+    change, decision = shown(compare_results(one, other))
+    if before == after:
+        assert decision is (Decision.IDENTICAL if paired else Decision.UNCLEAR)
+        assert change is (Change.NONE if paired else Change.UNCLEAR)
+    elif count < 40:
+        assert (change, decision) == (Change.UNCLEAR, Decision.UNCLEAR)
+    else:
+        assert change is (Change.WORSE if before > after else Change.BETTER)
+        assert decision is (Decision.WORSE if before > after else Decision.UNCLEAR)
+
+
 def test_a_gate_in_a_unit_limits_the_mean_margin() -> None:
     before = [0.1, 0.11] * 50
     after = [margin - 0.002 for margin in before]

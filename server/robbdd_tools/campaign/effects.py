@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import comb
 from statistics import fmean
 from typing import TYPE_CHECKING
 
@@ -102,7 +104,11 @@ def rate_effect(clause: MatchedClause, level: float, *, paired: bool) -> RateEff
 
 
 def margin_effect(clause: MatchedClause, level: float, *, paired: bool) -> MarginEffect | None:
-    """Return the change of the mean margin; ``None`` if fewer than two executions have margins in both runs."""
+    """Return the change of the mean margin; ``None`` if fewer than two executions have margins in both runs.
+
+    Margins that all move by the same amount have no spread. They show something only if there are so many of them that
+    chance would not give them the same direction; it is ``None`` otherwise.
+    """
     pairs = [
         (old.margin, new.margin)
         for old, new in zip(clause.before, clause.after, strict=True)
@@ -112,7 +118,10 @@ def margin_effect(clause: MatchedClause, level: float, *, paired: bool) -> Margi
         return None
     before, after = [old for old, _ in pairs], [new for _, new in pairs]
     difference = fmean(after) - fmean(before)
-    interval, probability = _margin_test(before, after, level, paired=paired)
+    tested = _margin_test(before, after, level, paired=paired)
+    if tested is None:
+        return None
+    interval, probability = tested
     missing = len(clause.before) - len(pairs)
     return MarginEffect(clause.unit, len(pairs), missing, difference, interval, probability)
 
@@ -156,14 +165,20 @@ def _least_probability(pairs: Sequence[tuple[bool, bool]], *, paired: bool) -> f
 
 def _margin_test(
     before: Sequence[float], after: Sequence[float], level: float, *, paired: bool
-) -> tuple[Interval, float]:
+) -> tuple[Interval, float] | None:
     differences = [new - old for old, new in zip(before, after, strict=True)]
     spread = differences if paired else [*(old - before[0] for old in before), *(new - after[0] for new in after)]
     if len(set(spread)) == 1:
-        # All margins moved by the same amount: there is no spread to estimate.
-        moved = differences[0]
-        return Interval(moved, moved), 1.0 if moved == 0.0 else 0.0
+        # There is no spread to estimate. The permutation test needs no spread: all signs, or all sides, are equal.
+        moved, count = differences[0], len(differences)
+        chance = 0.5 ** (count - 1) if paired else 2.0 / comb(2 * count, count)
+        if chance > 1.0 - level and (moved != 0.0 or not paired):
+            return None
+        return Interval(moved, moved), 1.0 if moved == 0.0 else chance
     stats = statistics()
-    test = stats.ttest_1samp(differences, 0.0) if paired else stats.ttest_ind(after, before, equal_var=False)
+    with warnings.catch_warnings():
+        # SciPy warns of samples whose values are all equal, whose spread is rounding.
+        warnings.simplefilter("ignore", RuntimeWarning)
+        test = stats.ttest_1samp(differences, 0.0) if paired else stats.ttest_ind(after, before, equal_var=False)
     found = test.confidence_interval(level)
     return Interval(float(found.low), float(found.high)), float(test.pvalue)
