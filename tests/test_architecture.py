@@ -65,6 +65,8 @@ HOMES = {
     "distributed": {"campaign"},
     "duckdb": {"campaign"},
     "reqif": {"workbench"},
+    "trimesh": {"world"},
+    "collada": {"world"},
     "cmaes": {"campaign"},
     "pytest": {"pytest_plugin"},
     "msgpack": {"user_code"},

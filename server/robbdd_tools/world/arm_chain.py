@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 TO_HAND = 3
 """An arm has at least this many joints above its hand; a finger of several links has fewer above a branch."""
 BARE = 6
-"""A branch without fingers is an arm from this many joints on: fingers have at most five."""
+"""A branch without fingers is an arm from this many joints on, if it is no finger of an arm itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +65,11 @@ def _descent(spec: Any, source: ModelSource, named: list[str]) -> tuple[list[Any
     body, found, beside = spec.worldbody, list[Any](), list[str]()
     while True:
         branches = [child for child in body.bodies if _moves(child)]
-        onward = branches if len(branches) == 1 else [one for one in branches if _hand_of(one) is not None]
+        bare = BARE if sum(len(one.joints) for one in found) < BARE else None
+        onward = branches if len(branches) == 1 else [one for one in branches if _hand_of(one, bare) is not None]
         chosen = [one for one in onward if one.name in named] or onward
         if len(chosen) > 1:
-            hands = ", ".join(f"'{_hand_of(one)}'" for one in chosen)
+            hands = ", ".join(f"'{_hand_of(one, bare)}'" for one in chosen)
             raise SceneError(
                 f"{source.name} has {len(chosen)} arms, with the hands {hands}: name a body or a site of one hand, "
                 'tool: "…"; the joints of the others are then fixed',
@@ -81,8 +82,11 @@ def _descent(spec: Any, source: ModelSource, named: list[str]) -> tuple[list[Any
         found.append(body)
 
 
-def _hand_of(branch: Any) -> str | None:
-    """Return the name of the hand to which a branch leads; ``None`` for a finger, a wheel or a head."""
+def _hand_of(branch: Any, bare: int | None) -> str | None:
+    """Return the name of the hand to which a branch leads; ``None`` for a finger, a wheel or a head.
+
+    A branch with at least ``bare`` joints leads to one without fingers, too.
+    """
     body, joints = branch, len(branch.joints)
     while True:
         branches = [child for child in body.bodies if _moves(child)]
@@ -90,10 +94,11 @@ def _hand_of(branch: Any) -> str | None:
             break
         body = branches[0]
         joints += len(body.joints)
-    below = [hand for one in branches if (hand := _hand_of(one)) is not None]
+    below = [hand for one in branches if (hand := _hand_of(one, bare)) is not None]
     if below:
         return below[0]
-    return str(body.name) if joints >= (TO_HAND if branches else BARE) else None
+    enough = TO_HAND if branches else bare
+    return str(body.name) if enough is not None and joints >= enough else None
 
 
 def tool_body(spec: Any, source: ModelSource, name: str) -> Any:

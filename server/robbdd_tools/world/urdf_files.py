@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -12,11 +13,14 @@ import numpy as np
 from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.mesh_formats import UnreadableMesh, as_stl, is_readable
 
-READABLE = (".stl", ".obj", ".msh")
-"""Mesh formats that the engine reads."""
+CONVERTED = "robbdd-mesh"
+"""Beginning of the names under which the engine gets converted meshes."""
 ROUNDED = 1e-9
 """The largest moment may exceed the sum of the others by this share of itself, because files round."""
+LEAST = 1e-6
+"""Smallest moment of inertia (kg m²) of a link whose file has no positive one."""
 HIDDEN = 3
 """Group of geoms that pictures leave out."""
 
@@ -40,14 +44,16 @@ def read_urdf(path: Path) -> Any:
         name = path.name.removesuffix(".xacro")
         wanted = f"expand it ('xacro {path.name} > {Path(name).stem}.urdf') and name the result"
         raise ValueError(f"it is a xacro file: {wanted}")
+    _mend_inertias(root)
+    converted: dict[str, bytes] = {}
     for link in root.iter("link"):
         for kind in ("visual", "collision"):
             for shape in link.findall(kind):
-                _use_mesh(path, link, shape)
+                _use_mesh(path, link, shape, converted)
     if root.find("mujoco") is None:
         settings = ElementTree.SubElement(root, "mujoco")
         ElementTree.SubElement(settings, "compiler", {"discardvisual": "false", "strippath": "false"})
-    spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+    spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"), assets=converted)
     for body in spec.bodies:
         shown = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
         for geom in body.geoms if shown else ():
@@ -81,9 +87,8 @@ def impossible_inertias(path: Path) -> Iterator[str]:
         inertia = link.find("inertial/inertia")
         if inertia is None:
             continue
-        xx, xy, xz, yy, yz, zz = (float(inertia.get(name, 0)) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-        low, middle, high = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).tolist()
-        if low + middle < high * (1 - ROUNDED):
+        low, middle, high = _moments(inertia)
+        if low + middle < high * (1 - ROUNDED) or (low <= 0.0 and _mass(link) > 0.0):
             yield link.get("name", "")
 
 
@@ -94,26 +99,55 @@ def massless_links(path: Path) -> Iterator[str]:
     except ElementTree.ParseError:
         return
     for link in root.iter("link") if root.tag == "robot" else ():
-        mass = link.find("inertial/mass")
-        if mass is None or float(mass.get("value", 0)) == 0.0:
+        if _mass(link) == 0.0:
             yield link.get("name", "")
 
 
-def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element) -> None:
-    """Replace a mesh's address by its path, or remove an unusable visual shape. Raises ``ValueError``."""
+def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element, converted: dict[str, bytes]) -> None:
+    """Replace a mesh's address by its path, or remove an unusable visual shape. Raises ``ValueError``.
+
+    A collision mesh in a format that the engine does not read is added to ``converted``, under the name that replaces
+    its address. Visual meshes are not converted: this would take seconds in each process.
+    """
     mesh = shape.find("geometry/mesh")
     if mesh is None:
         return
     name = mesh.get("filename", "")
     found = next((one for one in mesh_places(path, name) if one.is_file()), None)
-    problem = ""
-    if found is None:
-        problem = f"is not on this machine; looked for {', '.join(map(str, mesh_places(path, name)))}"
-    elif found.suffix.lower() not in READABLE:
-        problem = "has a format that the simulator cannot read: convert it to STL or OBJ"
-    if found is not None and not problem:
+    if found is not None and is_readable(found):
         mesh.set("filename", str(found))
-    elif shape.tag == "visual":
+        return
+    if shape.tag == "visual":
         link.remove(shape)
-    else:
-        raise ValueError(f"the collision mesh '{name}' of the link '{link.get('name')}' {problem}")
+        return
+    begin = f"the collision mesh '{name}' of the link '{link.get('name')}'"
+    if found is None:
+        raise ValueError(f"{begin} is not on this machine; looked for {', '.join(map(str, mesh_places(path, name)))}")
+    # The engine names a mesh after its file, so each file has one name.
+    address = f"{CONVERTED}-{sha256(str(found).encode()).hexdigest()[:12]}.stl"
+    try:
+        converted[address] = as_stl(found)
+    except UnreadableMesh as error:
+        raise ValueError(f"{begin} {error}") from error
+    mesh.set("filename", address)
+
+
+def _mend_inertias(root: ElementTree.Element) -> None:
+    """Replace inertias with a principal moment that is not positive by the mean of the moments, at least ``LEAST``."""
+    for link in root.iter("link"):
+        inertia = link.find("inertial/inertia")
+        moments = [] if inertia is None else _moments(inertia)
+        if inertia is not None and _mass(link) > 0.0 and moments[0] <= 0.0:
+            even = str(max(sum(moments) / 3, LEAST))
+            inertia.attrib |= {"ixx": even, "iyy": even, "izz": even, "ixy": "0", "ixz": "0", "iyz": "0"}
+
+
+def _moments(inertia: ElementTree.Element) -> list[float]:
+    """Return the principal moments (kg m²) of an inertia, the smallest first."""
+    xx, xy, xz, yy, yz, zz = (float(inertia.get(name, 0)) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    return np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).tolist()
+
+
+def _mass(link: ElementTree.Element) -> float:
+    mass = link.find("inertial/mass")
+    return 0.0 if mass is None else float(mass.get("value", 0))
