@@ -14,6 +14,7 @@ from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
+from robbdd_tools.world.hand_direction import direction_out
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -26,10 +27,6 @@ CONTRADICTION = 0.25
 """A stated stroke may differ from the measured one by this share."""
 SLACK = 1e-6
 """A stated value may be this far outside the actuator's range, because files round."""
-BETWEEN_FINGERS = 0.03
-"""If the frame of the palm is at most this far (m) from the middle of the closed faces, it is between the fingers."""
-STRAIGHT = np.cos(np.radians(10.0))
-"""A direction out of the hand that is nearer than this (cosine of the angle) to an axis of the palm is that axis."""
 TIP = 0.015
 """The tool is this far (m) from the ends of the gripping faces: half the length of usual pads."""
 
@@ -198,7 +195,7 @@ class GripperReader:
         mujoco.mj_kinematics(model, data)
         first, second = (np.mean([data.geom_xpos[model.geom(n).id] for n in face], axis=0) for face in faces[:2])
         across = (first - second) / np.linalg.norm(first - second)
-        ahead = _direction_out(model, data, palm, middle, across)
+        ahead = direction_out(model, data, palm, middle, across)
         data.qpos[:] = states[closed]
         mujoco.mj_kinematics(model, data)
         reached = [extent(model, data, name, ahead) for face in faces[:2] for name in face]
@@ -300,32 +297,6 @@ class GripperReader:
             turn.T @ axes[:, 0],
             turn.T @ axis,
         )
-
-
-def _direction_out(model: Any, data: Any, palm: int, middle: FloatArray, across: FloatArray) -> FloatArray:
-    """Return the direction out of a hand, perpendicular to the closing direction ``across``, shape (3,) each.
-
-    It leads to the ``middle`` (m) of the faces from the palm. If the frame of the palm is between its fingers, it leads
-    there from the nearest body before the palm that is farther away.
-    """
-    axes, body = data.xmat[palm].reshape(3, 3), palm
-    while body:
-        away = middle - data.xpos[body]
-        away = away - (away @ across) * across
-        length = float(np.linalg.norm(away))
-        if length > BETWEEN_FINGERS:
-            return away / length if body == palm else _straightened(away / length, axes)
-        body = int(model.body_parentid[body])
-    return axes[:, 2]
-
-
-def _straightened(direction: FloatArray, axes: FloatArray) -> FloatArray:
-    """Return the axis of a frame (columns, shape (3, 3)) that a direction is near to, else the direction, shape (3,).
-
-    Arms of five axes can point only the axis of their last joint straight down.
-    """
-    near = max((*axes.T, *-axes.T), key=lambda axis: float(axis @ direction))
-    return near if float(near @ direction) > STRAIGHT else direction
 
 
 def _states_on_the_way(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> list[FloatArray]:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from functools import lru_cache
 from importlib import import_module
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.files import open_regular
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,7 +50,7 @@ def as_stl(path: Path) -> bytes:
 
 def _binary_faces(path: Path) -> int:
     """Return the number of faces of a binary STL file; 0 if the file is not one."""
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         header = file.read(HEADER)
     faces = int.from_bytes(header[-4:], "little")
     return faces if len(header) == HEADER and path.stat().st_size >= HEADER + FACE * faces else 0
@@ -71,12 +74,14 @@ def _converted(path: Path, changed: int, size: int) -> bytes:
             import_module("collada")
     except ImportError:
         raise UnreadableMesh(f"has a format that the simulator cannot read: {INSTALL}") from None
+    with open_regular(path) as file:
+        content = file.read()
+    kind = path.suffix.lower()
     try:
-        scene = trimesh.load_scene(path)
-        mesh = scene.to_geometry()
+        mesh = trimesh.load_scene(BytesIO(content), file_type=kind.removeprefix(".")).to_geometry()
         faces = len(mesh.faces)
-        if path.suffix.lower() == ".dae":
-            mesh.apply_scale(_unit(path))
+        if kind == ".dae":
+            mesh.apply_scale(_unit(content))
     except Exception as error:  # each reader of trimesh fails with its own exception type
         raise UnreadableMesh(f"cannot be read: {' '.join(str(error).split()) or type(error).__name__}") from error
     if not faces:
@@ -85,7 +90,7 @@ def _converted(path: Path, changed: int, size: int) -> bytes:
     return bytes(mesh.export(file_type="stl"))
 
 
-def _unit(path: Path) -> float:
+def _unit(content: bytes) -> float:
     """Return the unit (m) of a COLLADA file."""
     collada: Any = import_module("collada")
-    return float(collada.Collada(str(path), ignore=[collada.common.DaeError]).assetInfo.unitmeter or 1.0)
+    return float(collada.Collada(BytesIO(content), ignore=[collada.common.DaeError]).assetInfo.unitmeter or 1.0)

@@ -8,7 +8,7 @@ import numpy as np
 
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.gripper_files import BETWEEN_FINGERS
+from robbdd_tools.world.hand_direction import BETWEEN_FINGERS
 from robbdd_tools.world.model_files import compiled
 from robbdd_tools.world.urdf_files import HIDDEN
 
