@@ -114,10 +114,10 @@ def test_a_gripper_that_several_actuators_close_is_not_stated(tmp_path: Path, te
     assert lines[0] == "model arm_model as mjcf {"
 
 
-def test_links_that_pass_through_everything_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_links_that_collide_as_they_look_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     link = '<geom type="capsule" size=".04" fromto="0 0 0 .45 0 0" mass="2"/>'
     seen = strangers.SCARA.replace(link, link.replace("/>", ' contype="0" conaffinity="0"/>'))
     main(["view", "--robot", str(write(tmp_path, seen)), "-o", str(tmp_path / "arm.png")])
-    assert "links without collision shapes, which pass through everything: arm1\n" in capsys.readouterr().out
+    assert "links without collision shapes, which collide as their visual shapes: arm1\n" in capsys.readouterr().out
     main(["view", "--robot", str(write(tmp_path, strangers.SCARA)), "-o", str(tmp_path / "arm.png")])
-    assert "pass through" not in capsys.readouterr().out
+    assert "collide as" not in capsys.readouterr().out

@@ -17,7 +17,15 @@ from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.friction import pair_declared, pair_given, pair_pads, pair_stiff, rank_by_friction
+from robbdd_tools.world.friction import (
+    ROUGHEST,
+    pair_declared,
+    pair_given,
+    pair_pads,
+    pair_stiff,
+    rank_by_friction,
+    too_rough,
+)
 from robbdd_tools.world.grip_force import limit_grip
 from robbdd_tools.world.laid_out import laid_out
 from robbdd_tools.world.mobile_base import base_of, drive_by_servos
@@ -123,6 +131,7 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
     loose = [
         shape_name(name, i) for name, model in cast.objects.items() if can_move(model) for i in range(len(model.shapes))
     ]
+    _refuse_rough(spec, cast)
     pair_pads(spec, pads, loose)
     jaws = {name for name, model in cast.objects.items() if model.joint is not None}
     jaws |= {model.joint.parent for model in cast.objects.values() if model.joint is not None and model.joint.parent}
@@ -143,6 +152,22 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
             return spec.compile()
     except ValueError as error:
         raise SceneError(f"the scene does not compile: {error}") from error
+
+
+def _refuse_rough(spec: Any, cast: Cast) -> None:
+    """Raise ``SceneError`` if files give a gripper and a part a friction that nothing has: it would carry anything."""
+    pairs = {frozenset((one.first, one.second)) for one in (() if cast.staging is None else cast.staging.frictions)}
+    for name, robot in cast.agents.items():
+        for thing, model in cast.objects.items():
+            if not model.graspable or frozenset((name, thing)) in pairs:
+                continue
+            shapes = [shape_name(thing, number) for number in range(len(model.shapes))]
+            coefficient = too_rough(spec, [f"{name}/{pad}" for pad in robot.pads], shapes)
+            if coefficient:
+                text = f"the files of '{name}' and '{thing}' both give a friction of {coefficient:g} or more"
+                stated = "State that of the pair: friction of obj <…> on agn <…>: 0.8"
+                origin = cast.origin(thing) or cast.origin(name)
+                raise SceneError(f"{text}; at most {ROUGHEST:g} can be simulated. {stated}", origin=origin)
 
 
 def _set_options(spec: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -134,6 +134,31 @@ def give_mass(spec: Any, links: Iterable[str]) -> list[str]:
         body.inertia, body.fullinertia = [SLENDER] * 3, [float("nan")] * 6
         body.ipos = [0.0, 0.0, 0.0]
     return [f"moving links without a mass, which got {1000 * LIGHT:g} g: {', '.join(light)}"] if light else []
+
+
+def make_solid(spec: Any) -> list[str]:
+    """Let moving links without collision shapes collide as their visual shapes; return what was changed.
+
+    Otherwise an arm would pass through everything, and its collisions would never be noticed.
+    """
+    found: list[str] = []
+    for body in [one for one in spec.bodies[1:] if one.joints]:
+        shapes = [geom for one in _rigid_with(body) for geom in one.geoms]
+        if shapes and not any(geom.contype or geom.conaffinity for geom in shapes):
+            found.append(str(body.name))
+            for geom in shapes:
+                geom.contype = geom.conaffinity = 1
+    return (
+        [f"links without collision shapes, which collide as their visual shapes: {', '.join(found)}"] if found else []
+    )
+
+
+def _rigid_with(body: Any) -> Iterator[Any]:
+    """Yield a body and the bodies that are fixed to it, except those that carry it."""
+    yield body
+    for child in body.bodies:
+        if not child.joints:
+            yield from _rigid_with(child)
 
 
 def _drop_dangling(spec: Any, source: ModelSource) -> None:

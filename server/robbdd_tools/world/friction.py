@@ -20,6 +20,10 @@ STIFF = (0.005, 1.0), (0.95, 0.99, 0.001, 0.5, 2.0)
 """Parameters of stiff contacts (``solref``, ``solimp``), the same as for the pads of the catalog's grippers."""
 
 
+ROUGHEST = 2.0
+"""Largest coefficient of a gripping face and a part, as in a configuration. Rubber on dry rubber has about 1.2."""
+
+
 def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
     """Replace the priorities of the files, so that the smoother geom of each contact determines the friction.
 
@@ -64,6 +68,13 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
         pair.friction = [sliding, sliding, sliding * patch, rolling, rolling]
         pair.solref, pair.solimp = pad.solref, pad.solimp
         pair.gap = pad.gap
+
+
+def too_rough(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> float:
+    """Return the coefficient between gripping faces and a part if no surfaces of real grippers have it, else 0."""
+    surfaces = [max(float(spec.geom(name).friction[0]) for name in names) for names in (list(pads), list(parts))]
+    coefficient = min(surfaces)
+    return coefficient if coefficient > ROUGHEST else 0.0
 
 
 def pair_stiff(spec: Any, jaws: Iterable[str], parts: Iterable[str]) -> None:

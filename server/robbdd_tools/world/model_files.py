@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource
 
 SITE = "workspace"
+LIGHTEST = 1e-3
+"""Smallest mass (kg) of a loose object, as in a configuration: lighter ones cannot be gripped and put down reliably."""
 
 
 def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
@@ -113,6 +115,10 @@ def _from_code(source: ModelSource) -> Any:
         raise SceneError(str(error), replace(error.fault, origin=source.iri), source.origin) from error
 
 
+SLACK = 1e-6
+"""Files round: a mass may be below the smallest one by this share."""
+
+
 @dataclass(frozen=True, slots=True)
 class MovingPart:
     """A moving part of an object from a file: the names of its body, of its joint and of its shapes in the file."""
@@ -160,6 +166,8 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     low, high = bounds_of(main.shapes)
     free = is_free(model, body) if source.format != "urdf" else float(model.body_mass[body]) > 0
     jointed = not free and bool(int(model.body_jntnum[body]))
+    if free:
+        _refuse_light(main.mass, source)
     own = next((region for region in sites.get(body, ()) if not region.name and (carries or not free)), None)
     if own is None and (carries or not free) and not sites and not jointed:
         own = space_above(low, high)
@@ -167,7 +175,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         name=source.iri,
         prefixes=(),
         shapes=main.shapes,
-        mass=max(main.mass, 1e-3),
+        mass=max(main.mass, LIGHTEST),
         friction=main.friction,
         free=free,
         graspable=free and not carries and not parts,
@@ -181,6 +189,13 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     )
     name, joint = name_of_body(model, body), joint_name(model, body) if jointed else ""
     return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts)
+
+
+def _refuse_light(mass: float, source: ModelSource) -> None:
+    """Raise ``SceneError`` for a loose object that would have to be simulated with another mass than its file's."""
+    if mass < LIGHTEST * (1 - SLACK):
+        least = f"at least {1000 * LIGHTEST:g} g can be simulated: state the mass of its shapes in kg"
+        raise SceneError(f"the object in {source.name} weighs {1000 * mass:.3g} g; {least}", origin=source.origin)
 
 
 class _Rigid:
@@ -230,7 +245,7 @@ def _part(
         name=source.iri,
         prefixes=(),
         shapes=rigid.shapes,
-        mass=max(rigid.mass, 1e-3),
+        mass=max(rigid.mass, LIGHTEST),
         friction=rigid.friction,
         free=False,
         graspable=False,

@@ -12,7 +12,14 @@ from robbdd_tools.catalog.executable import ArmModel, ModelEntry
 from robbdd_tools.world.arm_chain import chain_to_palm
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.file_contents import fix_joints, give_mass, note_changes, put_at_origin, reduce_to_arm
+from robbdd_tools.world.file_contents import (
+    fix_joints,
+    give_mass,
+    make_solid,
+    note_changes,
+    put_at_origin,
+    reduce_to_arm,
+)
 from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
 from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import GripperReader
@@ -78,6 +85,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     arm = semantics.complete(spec, stated)
     uses_group = semantics.palm and not stated.pads and not stated.tool
     chain = path_to(spec.body(semantics.palm)) if uses_group else _chain(spec, source, arm, changes)
+    changes += make_solid(spec)
     joints = _joints(source, chain)
     is_mobile = drives(compiled(spec, source), joints)
     joints = joints[BASE_JOINTS:] if is_mobile else joints

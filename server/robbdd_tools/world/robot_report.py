@@ -51,9 +51,6 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         if unusual:
             yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
     yield from changes_of(robot.mjcf)
-    ghosts = list(_without_contacts(model, name))
-    if ghosts:
-        yield f"links without collision shapes, which pass through everything: {', '.join(ghosts)}"
     base = base_of(robot)
     if base is not None:
         assumed = "" if base.stated else " (partly assumed)"
@@ -66,21 +63,6 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     )
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
     yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
-
-
-def _without_contacts(model: Any, name: str) -> Iterator[str]:
-    """Yield the moving links that have only visual shapes: their collisions are never noticed."""
-    own = _bodies(model, name)
-    touching = {
-        int(model.body_weldid[model.geom_bodyid[geom]])
-        for geom in range(model.ngeom)
-        if model.geom_contype[geom] or model.geom_conaffinity[geom]
-    }
-    for body in own:
-        # A link without any shape is a joint of several axes, not a part.
-        shown = bool(model.body_geomnum[body])
-        if model.body_weldid[body] == body and model.body_jntnum[body] and shown and body not in touching:
-            yield str(model.body(body).name).removeprefix(f"{name}/")
 
 
 def _fingers(model: Any, name: str, robot: RobotModel) -> str:

@@ -19,6 +19,8 @@ CONVERTED = "robbdd-mesh"
 """Beginning of the names under which the engine gets converted meshes."""
 ROUNDED = 1e-9
 """The largest moment may exceed the sum of the others by this share of itself, because files round."""
+FASTEST = 50.0
+"""No joint of an arm is faster than this (rad/s, m/s): the roll axes of the fastest SCARA arms reach 50 rad/s."""
 LEAST = 1e-6
 """Smallest moment of inertia (kg m²) of a link whose file has no positive one."""
 HIDDEN = 3
@@ -63,7 +65,10 @@ def read_urdf(path: Path) -> Any:
 
 
 def speeds(path: Path) -> dict[str, float]:
-    """Return the speed limit (rad/s, m/s) of each joint of a URDF file; nothing for another file."""
+    """Return the speed limit (rad/s, m/s) of each joint of a URDF file; nothing for another file.
+
+    A limit that no arm has stands for none.
+    """
     try:
         root = ElementTree.fromstring(source_xml(path))
     except ElementTree.ParseError:
@@ -71,7 +76,8 @@ def speeds(path: Path) -> dict[str, float]:
     # Transmissions have elements 'joint', too, with the names of joints but without limits.
     joints = root.findall("joint") if root.tag == "robot" else ()
     found = {joint.get("name", ""): joint.find("limit") for joint in joints}
-    return {name: float(limit.get("velocity", 0.0)) for name, limit in found.items() if limit is not None}
+    limits = {name: float(limit.get("velocity", 0.0)) for name, limit in found.items() if limit is not None}
+    return {name: limit for name, limit in limits.items() if limit <= FASTEST}
 
 
 def impossible_inertias(path: Path) -> Iterator[str]:
