@@ -59,7 +59,9 @@ study: $(READY)
 	$(BIN)/robbdd report examples/study/paper.study --store build/study --again 10 -o build/study/paper.html
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,travel --store build/study
 	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,speed --store build/study
-	$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,friction --store build/study
+	for factor in friction contact pads width; do \
+		$(BIN)/robbdd study outcomes examples/study/sensitivity.study --by robot,part,$$factor --store build/study; \
+	done
 
 # Executions up to the first failure, on three rare failures, by each method of `robbdd falsify`: docs/falsify.md
 falsification: $(READY)

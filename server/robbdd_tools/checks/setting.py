@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Element, Site
 
 CODE = "setting"
-_SHARED = frozenset({"position_range", "seed"})
+_SHARED = frozenset({"contact_time", "drop_height", "position_range", "seed"})
 """Configurations that agents and objects have in common."""
 MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
