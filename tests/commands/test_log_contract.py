@@ -1,4 +1,7 @@
-"""The contract of logs: the trace of a run, written as a log of any kind, gives the verdicts and margins of the run."""
+"""The contract of logs: the trace of a run, written as a log of any kind, gives the verdicts and margins of the run.
+
+A log that is handled in small parts gives the same bytes.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,24 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from kit import EXAMPLES
 from logs.converted import KINDS, converted
 from logs.drives import robbdd
+from robbdd_tools.agent import log_evidence
 from robbdd_tools.agent.judge_log import verdict_on
 from robbdd_tools.agent.log_evidence import evidence_of
+from robbdd_tools.base import large_arrays
+from robbdd_tools.logs import joint_tracks, log_contents, stored_rows, transform_batches
 from robbdd_tools.logs.open_log import read_log
+from robbdd_tools.monitor import judge
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.log_request import LogRequest
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.specs import ScenarioSpec
+from robbdd_tools.traces.codec import Evidence, pack
 
 pytestmark = pytest.mark.physics
 ROUNDED = 1e-6
@@ -52,6 +61,17 @@ EVERY = (
 )
 
 
+PARTS = (
+    (transform_batches, "MOST"),
+    (stored_rows, "BLOCK"),
+    (log_contents, "BLOCK"),
+    (joint_tracks, "BLOCK"),
+    (log_evidence, "BLOCK"),
+    (judge, "PART"),
+)
+"""Where the sizes of the parts are stated in which a long log is handled."""
+
+
 @pytest.mark.parametrize(("example", "model"), EVERY)
 def test_a_log_of_any_kind_gives_the_verdicts_and_margins_of_the_run(
     example: str, model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -75,10 +95,25 @@ def test_a_log_of_any_kind_gives_the_verdicts_and_margins_of_the_run(
     assert judged >= 5, "no clause of this example is judged by a log"
 
 
+def assert_same_in_parts(spec: ScenarioSpec, log: Path, expected: Evidence) -> None:
+    """Assert that a log that is read and judged in small parts gives the same trace, verdicts and curves."""
+    random = np.random.default_rng(len(expected.trace.times))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(large_arrays, "IN_MEMORY", 0)
+        for module, name in PARTS:
+            patch.setattr(module, name, int(random.integers(2, 400)))
+        found = evidence_of(spec, read_log(log), LogRequest(str(log))).evidence
+        assert pack(found) == pack(expected)
+        assert [verdict_on(clause, found, spec) for clause in spec.clauses] == [
+            verdict_on(clause, expected, spec) for clause in spec.clauses
+        ]
+
+
 def compared(spec: ScenarioSpec, log: Path, simulated: list[dict[str, Any]], kind: str, example: str) -> int:
     """Compare the verdicts of a log with those of the run, and return the number of those that are known."""
     known = 0
     evidence = evidence_of(spec, read_log(log), LogRequest(str(log))).evidence
+    assert_same_in_parts(spec, log, evidence)
     for clause, expected in zip(spec.clauses, simulated, strict=True):
         found = verdict_on(clause, evidence, spec)
         place = (kind, expected["sentence"], found.reason)

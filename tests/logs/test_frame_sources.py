@@ -98,7 +98,8 @@ def test_transforms_outrank_odometry_and_poses_of_the_same_name(tmp_path: Path) 
 def test_a_frame_with_two_parents_has_no_place_and_neither_have_its_children(tmp_path: Path) -> None:
     messages = [
         transform("cup", (0, 0, 0), stamp=1.0),
-        transform("cup", (0, 0, 0), stamp=2.0, parent="camera"),
+        transform("cup", (0, 0, 0), stamp=1.5, parent="camera"),
+        transform("cup", (0, 0, 0), stamp=1.9),
         transform("lid", (0, 0, 0), stamp=1.0, parent="cup", topic="/tf_static"),
         transform("mug", (1, 0, 0), stamp=1.0),
         transform("mug", (1, 0, 0), stamp=2.0),
@@ -120,7 +121,7 @@ def test_a_static_frame_that_moves_has_no_place(tmp_path: Path) -> None:
 
 
 def test_a_frame_that_is_lost_does_not_set_the_begin_of_the_log(tmp_path: Path) -> None:
-    early = [transform("cup", (0, 0, 0), stamp=1.0), transform("cup", (0, 0, 0), stamp=1.5, parent="camera")]
+    early = [transform("cup", (0, 0, 0), stamp=1 + tick / 10, parent=("map", "camera")[tick % 2]) for tick in range(3)]
     late = [transform("mug", (0, 0, 0), stamp=3.0), transform("mug", (0, 0, 0), stamp=4.0)]
     found = read(tmp_path, [*early, *late])
     assert (found.end, found.tracks["mug"].times.tolist()) == (1.0, [0.0, 1.0])

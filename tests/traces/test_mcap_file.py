@@ -20,6 +20,7 @@ from robbdd_tools.agent.compare_traces import difference
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.traces import codec, mcap_file
 from robbdd_tools.traces.codec import Evidence, pack, unpack
 from robbdd_tools.traces.mcap_file import SCHEMAS, UnreadableTrace, read_trace, write_trace
 from robbdd_tools.world.log_views import views
@@ -102,6 +103,22 @@ def test_a_trace_that_lacks_what_every_version_wrote_is_refused(missing: str) ->
 def still(rows: int = 5) -> Trace:
     times: FloatArray = np.linspace(0.0, 0.016 * (rows - 1), rows)
     return Trace(NAMES, times, np.zeros((rows, 2, 3)), np.zeros((rows, 2, 4)), {"e:r": np.zeros((rows, 2))})
+
+
+@given(traces(), st.integers(1, 200), st.integers(1, 9))
+def test_a_long_trace_is_written_in_parts(trace: Trace, message: int, part: int) -> None:
+    evidence = Evidence(trace, REGIONS)
+    expected = pack(evidence)
+    with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mcap_file, "MESSAGE", message)
+        patch.setattr(codec, "PART", part)
+        path = Path(folder) / "traces" / "a.mcap"
+        write_trace(path, evidence, ())
+        assert pack(read_trace(path)) == expected
+        with path.open("rb") as file:
+            parts = [one.data for _, _, one in make_reader(file).iter_messages(log_time_order=False)]
+    assert b"".join(parts) == expected
+    assert len(parts) > 1 or not len(trace.times)
 
 
 def test_the_first_diverging_step_and_quantity_are_named() -> None:

@@ -37,10 +37,6 @@ class LoggedArm:
     names: tuple[str, ...]
     tracks: tuple[JointTrack, ...]
 
-    def times(self) -> FloatArray:
-        """Return the times (s) at which a joint was observed, in order."""
-        return np.unique(np.concatenate([track.times for track in self.tracks]))
-
     def positions(self, times: FloatArray, max_gap: float) -> FloatArray:
         """Return the joint positions at ``times`` (n,) s, in rad or m, shape (n, joints); NaN where unobserved."""
         limits = zip(self.tracks, self.arm.limited, self.arm.turning, strict=True)

@@ -13,6 +13,7 @@ import numpy as np
 from robbdd_tools.agent.log_arms import find_arms
 from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.agent.log_grips import LogGrips, grip_signals
+from robbdd_tools.base.large_arrays import large_array
 from robbdd_tools.catalog.coordination import DEFINED
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
 
+BLOCK = 65536
+"""This many samples are computed at once."""
 START, END = "scenario-start", "scenario-end"
 
 
@@ -63,24 +66,36 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     arms = find_arms(cast, contents, request, remarks)
     frames = Frames(spec, cast, contents, request, remarks, arms)
     grips, signals = LogGrips(cast, contents, frames.of, request.max_gap), grip_signals(request.grips, cast)
-    observed = [*frames.observed(), *(arm.times() for arm in arms.values()), *grips.observed(signals)]
+    observed = [
+        *frames.observed(),
+        *(track.times for arm in arms.values() for track in arm.tracks),
+        *grips.observed(signals),
+    ]
     times = _times(observed, events, contents, request)
     joints = {agent: arm.positions(times, request.max_gap) for agent, arm in arms.items()}
-    poses = {element: found for element in cast.objects if (found := frames.object_poses(element, times)) is not None}
-    for agent in cast.agents:
-        found = frames.poses(agent, times)
-        if found is None and agent in arms:
-            found = _tool(arms[agent], joints[agent], frames.base_poses(agent, times))
-        if found is not None:
-            poses[agent] = found
-    names = (*poses, *(name for name in dict.fromkeys(one.held for one in signals) if name and name not in poses))
-    nowhere = np.full((len(times), 3), np.nan), np.full((len(times), 4), np.nan)
-    every = [poses.get(name, nowhere) for name in names]
+
+    def poses_of(element: str, rows: slice) -> Poses | None:
+        if element in cast.objects:
+            return frames.object_poses(element, times[rows])
+        found = frames.poses(element, times[rows])
+        if found is None and element in arms:
+            found = _tool(arms[element], joints[element][rows], frames.base_poses(element, times[rows]))
+        return found
+
+    known = [element for element in elements if poses_of(element, slice(0, 1)) is not None]
+    names = (*known, *(name for name in dict.fromkeys(one.held for one in signals) if name and name not in known))
+    positions, orientations = (large_array((len(times), len(names), width)) for width in (3, 4))
+    for column, name in enumerate(names):
+        for first in range(0, len(times), BLOCK):
+            rows = slice(first, first + BLOCK)
+            found = poses_of(name, rows) if name in known else None
+            positions[rows, column], orientations[rows, column] = (np.nan, np.nan) if found is None else found
+    poses = {name: (positions[:, column], orientations[:, column]) for column, name in enumerate(known)}
     trace = Trace(
         names,
         times,
-        np.stack([place for place, _ in every], axis=1) if every else np.empty((len(times), 0, 3)),
-        np.stack([turn for _, turn in every], axis=1) if every else np.empty((len(times), 0, 4)),
+        positions,
+        orientations,
         grips=grips.held(signals, names, times, poses),
         events=events,
         settings={pair: written(value) for pair, value in cast.judged.items()},
@@ -150,9 +165,10 @@ def _times(
     These are the times ``observed`` of frames and joints, thinned out to the largest rate, the messages on truths, the
     events, and one time in each gap.
     """
-    seen = np.unique(np.concatenate([*observed, np.empty(0)]))
-    slots = np.floor(seen * request.rate)
-    kept = seen[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(seen) else seen
+    kept = np.empty(0)
+    for one in observed:
+        thinned = [_thinned(one[first : first + BLOCK], request.rate) for first in range(0, len(one), BLOCK)]
+        kept = _thinned(np.unique(np.concatenate([kept, *thinned])), request.rate)
     reported = [found.times for found in contents.truths.values()]
     edges = [*(stamp.time for stamp in events), 0.0, contents.end]
     times = np.unique(np.concatenate([kept, *reported, edges]))
@@ -161,6 +177,12 @@ def _times(
     # Without a sample in a gap, a clause would be judged across it.
     long = np.diff(times) > request.max_gap
     return np.unique(np.concatenate([times, (times[:-1] + times[1:])[long] / 2]))
+
+
+def _thinned(times: FloatArray, rate: float) -> FloatArray:
+    """Return the first of the times (n,) s, which increase, in each of the ``rate`` parts of a second."""
+    slots = np.floor(times * rate)
+    return times[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(times) else times
 
 
 def _sampled(truths: Truths, times: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ from robbdd_tools.logs.log_names import (
     stated_frames,
     tool_frame_of,
 )
-from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of, rotated
+from robbdd_tools.logs.transforms import Unconnected, poses_at, product, reached, root_of, rotated
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.staging import Staging
 
@@ -86,12 +86,9 @@ class Frames:
 
     def observed(self) -> list[FloatArray]:
         """Return the times (s) of the moving frames of elements and bases, and of all frames up to their roots."""
-        found: set[str] = set()
-        for frame in (*self.of.values(), *self._bases.values()):
-            while frame in self._tracks and frame not in found:
-                found.add(frame)
-                frame = self._tracks[frame].parent
-        return [track.times for frame in sorted(found) if not (track := self._tracks[frame]).static]
+        found = sorted(reached((*self.of.values(), *self._bases.values()), self._tracks))
+        used = [one for frame in found for one in (self._tracks[frame], *self._tracks[frame].later)]
+        return [track.times for track in used if not track.static]
 
     def poses(self, element: str, times: FloatArray) -> Poses | None:
         """Return the poses of an element's frame at some times (n,) s; ``None`` if it has none."""
@@ -146,7 +143,7 @@ class Frames:
 
         A remark names each agent of ``asked`` without a base.
         """
-        frames = {*self._tracks, *(track.parent for track in self._tracks.values())}
+        frames = {*self._tracks, *(parent for track in self._tracks.values() for parent in track.parents)}
         found: dict[str, str] = {}
         for agent, robot in self._cast.agents.items():
             try:
@@ -236,7 +233,7 @@ def _tilts(cast: Cast, agent: str, count: int) -> FloatArray:
 
 def _stated_world(stated: str, tracks: Mapping[str, Track]) -> str:
     """Return the stated frame of the world, empty if none is. Raises ``NoElement`` if the log has no such frame."""
-    world, known = stated.lstrip("/"), {*tracks, *(track.parent for track in tracks.values())}
+    world, known = stated.lstrip("/"), {*tracks, *(parent for track in tracks.values() for parent in track.parents)}
     if world and known and world not in known:
         raise NoElement(f"the log has no frame '{world}' for --world; it has: {', '.join(sorted(known)[:MAX_LISTED])}")
     return world

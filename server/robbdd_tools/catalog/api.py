@@ -205,6 +205,8 @@ class Predicate:
     - ``synonyms``: wrong words that users write for it; the error message then names the predicate.
     - ``in_texts``: other forms with the same slots that only the text of a ``pred("…")`` may have, because as a phrase
       they belong to a predicate about other kinds of elements.
+    - ``pointwise``: true if the margin at a sample depends on no other sample but the one before it, so that long
+      windows may be evaluated in parts.
     """
 
     name: str
@@ -223,6 +225,7 @@ class Predicate:
     measured: Literal["nothing", "length", "angle", "speed", "otherwise"] = "otherwise"
     synonyms: tuple[str, ...] = ()
     in_texts: tuple[str, ...] = ()
+    pointwise: bool = False
 
 
 @dataclass(frozen=True, slots=True)

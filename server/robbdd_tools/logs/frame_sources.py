@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.logs.log_contents import TrackBuilder
+from robbdd_tools.logs.track_builder import TrackBuilder
 
 if TYPE_CHECKING:
     from robbdd_tools.logs.log_contents import Track
+    from robbdd_tools.logs.stored_rows import Nanoseconds
 
 TRANSFORMS = "tf"
 STATIC = "tf_static"
@@ -56,7 +56,7 @@ class FrameSources:
             if builder is not None:
                 builder.drop(frame)
 
-    def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
+    def retime(self, convert: Callable[[Nanoseconds], Nanoseconds]) -> None:
         """Replace the times (ns) of all poses."""
         for builder in (*self._transforms.values(), *self._topics.values()):
             builder.retime(convert)
@@ -103,12 +103,17 @@ def _joined(groups: Mapping[str, dict[str, Track]], remarks: list[str]) -> dict[
         space = space.removesuffix(TRANSFORMS).rstrip("/") if space.rpartition("/")[2] == TRANSFORMS else space
         names = {frame: f"{space}/{frame}" for frame in tracks if count[frame] > 1 and space}
         for frame, track in tracks.items():
-            found[names.get(frame, frame)] = replace(track, parent=names.get(track.parent, track.parent))
+            found[names.get(frame, frame)] = _renamed(track, names)
         if names:
             listed = ", ".join(f"'{name}'" for name in list(names.values())[:MAX_LISTED])
             listed += f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
             remarks.append(f"several topics have frames of the same names: those of '{topic}' are called {listed}")
     return found
+
+
+def _renamed(track: Track, names: Mapping[str, str]) -> Track:
+    later = tuple(replace(one, parent=names.get(one.parent, one.parent)) for one in track.later)
+    return replace(track, parent=names.get(track.parent, track.parent), later=later)
 
 
 def _outranked(frame: str, used: Track, others: Mapping[str, Track]) -> list[str]:

@@ -76,6 +76,10 @@ class HeaderClocks:
             pairs = self._sources[topic, frame] = _Pairs()
         pairs.add(received, stamp)
 
+    def seen_many(self, topic: str, frame: str, received: Nanoseconds, stamps: Nanoseconds) -> None:
+        """Add messages (n,), in the order of their reception."""
+        self._sources.setdefault((topic, frame), _Pairs()).extend(received, stamps)
+
     def header_time(self) -> HeaderTime:
         """Return the headers' clock that counts, and the sources that have a different one."""
         jumps = {source: float(pairs.jump) for source, pairs in self._sources.items() if pairs.jump}
@@ -131,8 +135,33 @@ class _Pairs:
             self.received.append(received)
             self.stamps.append(stamp)
 
+    def extend(self, received: Nanoseconds, stamps: Nanoseconds) -> None:
+        """Add messages (n,): the same as ``add`` for each of them."""
+        before = np.concatenate([[self.last[0]], received[:-1]]), np.concatenate([[self.last[1]], stamps[:-1]])
+        back = (before[1] - stamps)[received > before[0]]
+        if len(back) and (jump := int(back.max())) > MIN_OFFSET:
+            self.jump = max(self.jump, jump)
+        self.last = int(received[-1]), int(stamps[-1])
+        row = 0
+        while row < len(received):
+            if self.received:
+                # Only rows that may be kept are looked at one by one.
+                offset = self.received[-1] - self.stamps[-1]
+                kept = (received[row:] - self.received[-1] >= EVERY) | (
+                    np.abs(received[row:] - stamps[row:] - offset) > MIN_DRIFT
+                )
+                if not kept.any():
+                    return
+                row += int(np.argmax(kept))
+            self.received.append(int(received[row]))
+            self.stamps.append(int(stamps[row]))
+            row += 1
+
     def arrays(self) -> tuple[Nanoseconds, Nanoseconds]:
-        return np.array(self.received, dtype=np.int64), np.array(self.stamps, dtype=np.int64)
+        pairs = [*zip(self.received, self.stamps, strict=True)]
+        # Beyond the last pair, the clocks count as equally fast, so the last message belongs to them.
+        found = np.array([*pairs, self.last] if self.last[0] > pairs[-1][0] else pairs, dtype=np.int64)
+        return found[:, 0], found[:, 1]
 
 
 def _reference(known: dict[Source, tuple[Nanoseconds, Nanoseconds]]) -> Source:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.base.large_arrays import large_array
+from robbdd_tools.logs.stored_rows import BLOCK, StoredRows
+
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.logs.stored_rows import Nanoseconds
 
 TURN = 2 * np.pi
 
@@ -39,7 +44,8 @@ class JointBuilder:
 
     remarks: dict[str, None] = field(default_factory=dict[str, None])
     """Sentences on messages that are not used."""
-    _topics: dict[str, dict[str, _States]] = field(default_factory=dict[str, "dict[str, _States]"])
+    _topics: dict[str, dict[str, StoredRows]] = field(default_factory=dict[str, dict[str, StoredRows]])
+    """Topic → name of a joint → rows of its position and its effort."""
 
     def add(
         self, topic: str, time: int, names: Sequence[str], positions: Sequence[float], efforts: Sequence[float] = ()
@@ -56,28 +62,26 @@ class JointBuilder:
         for name, position, effort in zip(names, positions, forces, strict=True):
             states = joints.get(name)
             if states is None:
-                states = joints[name] = _States()
-            states.times.append(time)
-            states.values.extend((float(position), float(effort)))
+                states = joints[name] = StoredRows(2)
+            states.append(time, (float(position), float(effort)))
 
     def absorb(self, other: JointBuilder) -> None:
         """Add the states of another builder."""
         self.remarks |= other.remarks
         for topic, joints in other._topics.items():
             for name, states in joints.items():
-                own = self._topics.setdefault(topic, {}).setdefault(name, _States())
-                own.times.extend(states.times)
-                own.values.extend(states.values)
+                own = self._topics.setdefault(topic, {}).setdefault(name, StoredRows(2))
+                own.absorb(states)
 
     def drop(self, topic: str) -> None:
         """Forget the states that a topic published."""
         self._topics.pop(topic, None)
 
-    def retime(self, convert: Callable[[array[int]], array[int]]) -> None:
+    def retime(self, convert: Callable[[Nanoseconds], Nanoseconds]) -> None:
         """Replace the times (ns) of all states."""
         for joints in self._topics.values():
-            for states in joints.values():
-                states.times = convert(states.times)
+            for name, states in joints.items():
+                joints[name] = states.retimed(convert)
 
     def bounds(self) -> list[int]:
         """Return the times of the earliest and the latest state, ns; empty if there is none."""
@@ -90,7 +94,7 @@ class JointBuilder:
         Of several states at one time, the last one is kept. Positions that are not finite are left out.
         """
         every = {
-            topic: {name: states.track(begin) for name, states in joints.items()}
+            topic: {name: _track(states, begin) for name, states in joints.items()}
             for topic, joints in self._topics.items()
         }
         return {
@@ -100,26 +104,18 @@ class JointBuilder:
         }
 
 
-@dataclass
-class _States:
-    """The states of one joint: times (ns), and for each the position and the effort."""
+def _track(states: StoredRows, begin: int) -> JointTrack:
+    stamps, values = states.in_order(_has_position)
+    times, positions, efforts = (large_array((len(stamps),)) for _ in range(3))
+    for first in range(0, len(stamps), BLOCK):
+        rows = slice(first, first + BLOCK)
+        times[rows] = (stamps[rows] - begin) / 1e9
+        positions[rows], efforts[rows] = values[rows, 0], values[rows, 1]
+    return JointTrack(times, positions, efforts)
 
-    times: array[int] = field(default_factory=lambda: array("q"))
-    values: array[float] = field(default_factory=lambda: array("d"))
 
-    def bounds(self) -> tuple[int, int]:
-        return min(self.times), max(self.times)
-
-    def track(self, begin: int) -> JointTrack:
-        stamps, values = np.array(self.times, dtype=np.int64), np.array(self.values).reshape(-1, 2)
-        # The sort is stable: of equal times, the state that was recorded last stays last.
-        order = np.argsort(stamps, kind="stable")
-        stamps, values = stamps[order], values[order]
-        usable = np.isfinite(values[:, 0])
-        stamps, values = stamps[usable], values[usable]
-        last = np.ones(len(stamps), bool)
-        last[:-1] = stamps[1:] != stamps[:-1]
-        return JointTrack((stamps[last] - begin) / 1e9, values[last, 0], values[last, 1])
+def _has_position(values: FloatArray) -> npt.NDArray[np.bool_]:
+    return np.isfinite(values[:, 0])
 
 
 def positions_at(track: JointTrack, times: FloatArray, max_gap: float, *, wraps: bool = False) -> FloatArray:

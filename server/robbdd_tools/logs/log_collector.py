@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +14,10 @@ from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, Truths
 
 if TYPE_CHECKING:
-    from robbdd_tools.logs.log_contents import TrackBuilder
+    from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.logs.pose_lists import Pose
+    from robbdd_tools.logs.stored_rows import Nanoseconds
+    from robbdd_tools.logs.track_builder import TrackBuilder
 
 FORCE = "force"
 
@@ -44,6 +45,27 @@ class LogCollector:
         # Static transforms hold at all times: they are published once, and may have the time of a start long ago.
         messages = self._stamped if static else self._messages(topic, name, time)
         _add(messages.frames.of_transforms(topic), name, parent, stamp or received, pose, static=static)
+
+    def transforms(
+        self,
+        topic: str,
+        frame: str,
+        parents: Iterable[tuple[str, npt.NDArray[np.bool_]]],
+        times: tuple[Nanoseconds, Nanoseconds],
+        poses: FloatArray,
+    ) -> None:
+        """Add transforms of a moving frame. The names have no leading slashes.
+
+        ``parents`` has each parent with its rows. ``times`` has the times (n,) of headers, of which all or none are
+        zero, and of reception. ``poses`` (n, 7) has positions (m) and orientations (w, x, y, z).
+        """
+        stamps, received = times
+        messages = self._stamped if stamps[0] else self._received
+        if stamps[0]:
+            self.clocks.seen_many(topic, frame, received, stamps)
+        builder = messages.frames.of_transforms(topic)
+        for parent, rows in parents:
+            builder.extend(frame, parent, (stamps if stamps[0] else received)[rows], poses[rows])
 
     def pose(self, topic: str, frame: str, parent: str, time: tuple[int, int], pose: Pose) -> None:
         """Add the pose of a frame on a topic of its own; ``time`` as for ``transform``."""
@@ -128,12 +150,9 @@ class _Messages:
             self.forces.drop(topic)
 
     def retime(self, clock: HeaderTime) -> None:
-        def convert(times: array[int]) -> array[int]:
-            return array("q", _moved(times, clock))
-
-        self.frames.retime(convert)
-        self.joints.retime(convert)
-        self.forces.retime(convert)
+        self.frames.retime(clock.of)
+        self.joints.retime(clock.of)
+        self.forces.retime(clock.of)
 
     def bounds(self) -> list[int]:
         return [*self.frames.bounds(), *self.joints.bounds(), *self.forces.bounds()]

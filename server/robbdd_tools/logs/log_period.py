@@ -23,7 +23,7 @@ def cut(contents: LogContents, begin: float, end: float | None) -> LogContents:
     until = contents.end if end is None else min(end, contents.end)
     if not begin < until:
         raise UnreadableLog(f"the log has nothing from {begin:g} s on: it ends at {contents.end:.2f} s")
-    tracks = {frame: found for frame, one in contents.tracks.items() if len((found := _track(one, begin, until)).times)}
+    tracks = {frame: found for frame, one in contents.tracks.items() if (found := _track(one, begin, until))}
     joints = {
         topic: {name: _states(one, begin, until) for name, one in states.items()}
         for topic, states in contents.joints.items()
@@ -49,9 +49,16 @@ def _inside(times: FloatArray, begin: float, end: float) -> slice:
     return slice(first, last)
 
 
-def _track(track: Track, begin: float, end: float) -> Track:
+def _track(track: Track, begin: float, end: float) -> Track | None:
+    """Return the part of a track in a period; ``None`` if it has none."""
     if track.static:
         return track
+    parts = [_part(one, begin, end) for one in (track, *track.later)]
+    known = [one for one in parts if len(one.times)]
+    return replace(known[0], later=tuple(known[1:])) if known else None
+
+
+def _part(track: Track, begin: float, end: float) -> Track:
     rows = _inside(track.times, begin, end)
     return Track(track.parent, track.times[rows] - begin, track.positions[rows], track.orientations[rows])
 

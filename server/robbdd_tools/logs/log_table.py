@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.logs.joint_tracks import JointBuilder
-from robbdd_tools.logs.log_contents import LogContents, TextStamp, TrackBuilder, UnreadableLog
+from robbdd_tools.logs.log_contents import LogContents, TextStamp, UnreadableLog
 from robbdd_tools.logs.table_columns import POSITION, TURN, Columns, columns_of
+from robbdd_tools.logs.track_builder import TrackBuilder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

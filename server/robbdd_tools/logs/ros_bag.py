@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.logs.event_watch import EventWatch
+from robbdd_tools.logs.frame_sources import STATIC
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.ros_definitions import known_types
 from robbdd_tools.logs.ros_messages import HEADERLESS, READERS, RosContents
+from robbdd_tools.logs.transform_batches import KIND, TransformBatches, is_usual
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -53,18 +55,31 @@ def read_ros_bag(
             )
             stamped = {one.topic: str(one.msgtype) for one in wanted if one.msgtype in READERS}
             ahead = dict(stated_clocks(clocks or {}, stamped))
+            batches = TransformBatches(contents.found)
+            # Transforms are by far the most messages of most logs.
+            batched = _batched(wanted, watch.topics, ahead) if is_usual(defined, known.fielddefs) else set[str]()
             for connection, received, raw in reader.messages(connections=wanted) if wanted else ():
+                if connection.topic in batched and batches.add(connection.topic, received, raw):
+                    continue
                 topic = f": '{connection.topic}' ({connection.msgtype})"
                 message = reader.deserialize(raw, connection.msgtype)
                 contents.ahead = ahead.get(connection.topic, 0)
                 take_message(contents, watch, (connection.topic, connection.msgtype), received, message)
                 topic = ""
+            batches.finish()
         contents.remarks += watch.remarks
         return contents.finish()
     except UnreadableLog as error:
         raise UnreadableLog(f"{path}: {error}") from None
     except Exception as error:  # On damaged bytes each decoder raises exceptions of its own types.
         raise UnreadableLog(f"{path} cannot be read as a ROS bag{topic}: {error or type(error).__name__}") from error
+
+
+def _batched(connections: Iterable[Any], watched: Collection[str], ahead: Collection[str]) -> set[str]:
+    """Return the topics of moving transforms in CDR of which only the transforms are used, by the headers' clock."""
+    topics = {one.topic for one in connections if one.msgtype == KIND and one.topic.rpartition("/")[2] != STATIC}
+    others = {one.topic for one in connections if one.msgtype != KIND}
+    return topics - others - {*watched, *ahead}
 
 
 def take_message(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,10 @@ class Unconnected(Exception):
 
 
 def root_of(frame: str, tracks: Mapping[str, Track]) -> str:
-    """Return the root of a frame: the end of its chain of parents. Raises ``Unconnected`` if the chain is a circle."""
+    """Return the root of a frame: the end of its chain of parents. Raises ``Unconnected`` if the chain is a circle.
+
+    If a frame changes its parent, its first parent counts.
+    """
     return _chain(frame, tracks)[-1]
 
 
@@ -27,9 +31,12 @@ def poses_at(
     """Return the poses of ``frame`` in ``reference`` at ``times`` (n,) s.
 
     The result has the positions (n, 3) m and the orientations (n, 4) as (w, x, y, z). A pose is interpolated between
-    two recorded ones that are at most ``max_gap`` (s) apart. It is NaN where they are further apart, and before the
-    first and after the last recorded pose. Raises ``Unconnected``.
+    two recorded ones in the same parent that are at most ``max_gap`` (s) apart. It is NaN where they are further apart,
+    and before the first and after the last recorded pose. Raises ``Unconnected``.
     """
+    changed = next((one for one in reached((frame, reference), tracks) if tracks[one].later), None)
+    if changed is not None:
+        return _in_each_parent(changed, (frame, reference), tracks, times, max_gap)
     down, up = _chain(frame, tracks), _chain(reference, tracks)
     common = next((name for name in down if name in up), None)
     if common is None:
@@ -38,6 +45,38 @@ def poses_at(
     origin, base = _along(up[: up.index(common)], tracks, times, max_gap)
     back = base * (1.0, -1.0, -1.0, -1.0)
     return rotated(back, position - origin), product(back, turn)
+
+
+def _in_each_parent(
+    changed: str, frames: tuple[str, str], tracks: Mapping[str, Track], times: FloatArray, max_gap: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the poses of ``poses_at`` where a frame changes its parent: at each time, those in its parent then."""
+    position, turn = np.full((len(times), 3), np.nan), np.full((len(times), 4), np.nan)
+    problems: list[Unconnected] = []
+    alternatives = [replace(one, later=()) for one in (tracks[changed], *tracks[changed].later)]
+    for one in alternatives:
+        try:
+            place, rotation = poses_at(*frames, {**tracks, changed: one}, times, max_gap)
+        except Unconnected as problem:
+            problems.append(problem)
+            continue
+        missing = np.isnan(position).any(axis=1) | np.isnan(turn).any(axis=1)
+        position[missing], turn[missing] = place[missing], rotation[missing]
+    if len(problems) == len(alternatives):
+        raise problems[0]
+    return position, turn
+
+
+def reached(frames: Iterable[str], tracks: Mapping[str, Track]) -> Iterator[str]:
+    """Yield the frames with a track on all ways from some frames to their roots."""
+    found: set[str] = set()
+    left = list(frames)
+    while left:
+        frame = left.pop(0)
+        if frame in tracks and frame not in found:
+            found.add(frame)
+            yield frame
+            left += tracks[frame].parents
 
 
 def product(first: FloatArray, second: FloatArray) -> FloatArray:

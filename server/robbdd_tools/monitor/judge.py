@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
 T = TypeVar("T")
+PART = 65536
+"""This many samples are evaluated at once."""
 NOT_THROUGHOUT = "'whenever' needs a time constraint that says throughout, not 'at some time'"
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 """Workspace → its regions, each with the object in whose frame the region is given."""
@@ -76,11 +79,13 @@ class WindowEvidence:
 
         At the first sample, it is the mean velocity until the next sample. In a trace of one sample, it is NaN.
         """
-        path, times = self.trace.positions[:, self.trace.column(name)], self.trace.times
+        rows, extra = self._with_neighbour()
+        path, times = self.trace.positions[rows, self.trace.column(name)], self.trace.times[rows]
         if len(times) < 2:
             return np.full((1, 3), np.nan)
         steps = np.diff(path, axis=0) / np.diff(times)[:, None]
-        return self._observed(name, np.concatenate([steps[:1], steps])[self._rows], self.times)
+        steps = steps if extra else np.concatenate([steps[:1], steps])
+        return self._observed(name, steps[: len(self.times)], self.times)
 
     def turning(self, name: str) -> FloatArray:
         """Return the mean angular speed of an element since the previous sample, rad/s, shape (n,).
@@ -89,7 +94,8 @@ class WindowEvidence:
         ``KeyError`` and ``Unobserved``.
         """
         need_contacts(self.trace.settings)
-        turns, times = self.trace.orientations[:, self.trace.column(name)], self.trace.times
+        rows, extra = self._with_neighbour()
+        turns, times = self.trace.orientations[rows, self.trace.column(name)], self.trace.times[rows]
         if len(times) < 2:
             return np.full(1, np.nan)
         # The distance of two unit quaternions is twice the sine of a quarter of the angle; q and -q are the same turn.
@@ -97,8 +103,13 @@ class WindowEvidence:
             np.linalg.norm(turns[1:] - turns[:-1], axis=1), np.linalg.norm(turns[1:] + turns[:-1], axis=1)
         )
         steps = 4.0 * np.arcsin(np.clip(chords / 2.0, 0.0, 1.0)) / np.diff(times)
-        speeds = np.concatenate([steps[:1], steps])[self._rows]
-        return self._observed(name, speeds[:, None], self.times)[:, 0]
+        speeds = steps if extra else np.concatenate([steps[:1], steps])
+        return self._observed(name, speeds[: len(self.times), None], self.times)[:, 0]
+
+    def _with_neighbour(self) -> tuple[slice, bool]:
+        """Return the window's rows and a row before them or, at the begin of the trace, after them; true if before."""
+        first, after = self.window.first, self.window.last + 1
+        return (slice(first - 1, after), True) if first else (slice(0, max(after, 2)), False)
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
         """Return the positions at the last sample at or before each of ``times``, m, shape (n, 3).
@@ -328,8 +339,17 @@ def unit_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments
 
 
 def margins_of(predicate: Predicate, evidence: WindowEvidence, arguments: Arguments) -> FloatArray:
-    """Return the margins of a predicate with an evaluator, shape (n,). Raises ``KeyError`` for a missing record."""
+    """Return the margins of a predicate with an evaluator, shape (n,). Raises ``KeyError`` for a missing record.
+
+    A long window is evaluated in parts where the predicate allows it: an hour of a log has a million samples.
+    """
     assert predicate.evaluate is not None
+    first, after = evidence.window.first, evidence.window.last + 1
+    if predicate.pointwise and after - first > PART:
+        parts = (Window(begin, min(begin + PART, after) - 1) for begin in range(first, after, PART))
+        # Without an observation, the reason must be that of the whole window.
+        with suppress(Unobserved):
+            return np.concatenate([predicate.evaluate(replace(evidence, window=one), arguments) for one in parts])
     return predicate.evaluate(evidence, arguments)
 
 
@@ -343,7 +363,7 @@ def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regio
     if predicate.evaluate is None or predicate.quantities or predicate.set_up or len(trace.times) < 2:
         return None
     try:
-        margins = predicate.evaluate(WindowEvidence(trace, Window(0, len(trace.times) - 1), regions), arguments)
+        margins = margins_of(predicate, WindowEvidence(trace, Window(0, len(trace.times) - 1), regions), arguments)
     except (KeyError, Unobserved):
         return None
     finite = margins[np.isfinite(margins)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from typing import Any, cast
 
@@ -24,6 +24,8 @@ class Evidence:
     regions: Regions
 
 
+PART = 1 << 18
+"""This many numbers are encoded at once."""
 KINDS: Mapping[str, Any] = {
     kind.__name__: kind for kind in (Evidence, Trace, Contact, Doubt, EventStamp, Region, OpeningRecord)
 }
@@ -31,15 +33,25 @@ KINDS: Mapping[str, Any] = {
 
 
 def pack(evidence: Evidence) -> bytes:
-    """Return the length (8 bytes, little-endian) of a JSON description, the description, and the arrays one after
-    another.
+    """Return the bytes of ``pack_parts``; raises ``TypeError`` likewise."""
+    return b"".join(pack_parts(evidence))
 
-    Raises ``TypeError`` for a value that could not be restored.
+
+def pack_parts(evidence: Evidence) -> Iterator[bytes]:
+    """Yield the bytes of a trace in parts, so that a long trace is never in memory as bytes.
+
+    They are the length (8 bytes, little-endian) of a JSON description, the description, and the arrays one after
+    another. Raises ``TypeError`` for a value that could not be restored.
     """
     arrays: list[np.ndarray[Any, Any]] = []
     head = json.dumps(_described(evidence, arrays), ensure_ascii=False).encode()
-    # Time is the fastest index: the many constant series then compress to almost nothing.
-    return b"".join((len(head).to_bytes(8, "little"), head, *(array.tobytes(order="F") for array in arrays)))
+    yield len(head).to_bytes(8, "little") + head
+    for array in arrays:
+        # Time is the fastest index: the many constant series then compress to almost nothing.
+        for index in np.ndindex(array.shape[:0:-1]):
+            series = array[(slice(None), *index[::-1])] if array.ndim else array
+            for first in range(0, len(series) if array.ndim else 1, PART):
+                yield (series[first : first + PART] if array.ndim else series).tobytes()
 
 
 def unpack(data: bytes) -> Evidence:

@@ -1,15 +1,16 @@
 """Traces in MCAP, the robotics log format: the exact trace, and topics for viewers and plotters.
 
-Topics: ``/trace`` (one message: the bytes of ``codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
-(foxglove.SceneUpdate), ``/geometry`` (the same with meshes, for our own views), ``/joints``, ``/events`` and
-``/verdicts`` (JSON with the schemas below). Times are simulated; nothing depends on the wall clock, so equal executions
-give equal files.
+Topics: ``/trace`` (the bytes of ``codec`` in one message, or in several of a long trace), ``/tf``
+(foxglove.FrameTransforms), ``/scene`` (foxglove.SceneUpdate), ``/geometry`` (the same with meshes, for our own views),
+``/joints``, ``/events`` and ``/verdicts`` (JSON with the schemas below). Times are simulated; nothing depends on the
+wall clock, so equal executions give equal files.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +20,12 @@ from mcap.writer import Writer
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.base.writing import replacing_bytes
-from robbdd_tools.traces.codec import Evidence, pack, unpack
+from robbdd_tools.traces.codec import Evidence, pack_parts, unpack
 
 TRACE, ENCODING = "/trace", "robbdd-trace-1"
 LIBRARY = "robbdd"
+MESSAGE = 1 << 24
+"""A message with a part of a trace has at least this many bytes, but for the last one."""
 NUMBER, TEXT = {"type": "number"}, {"type": "string"}
 
 
@@ -78,14 +81,16 @@ class UnreadableTrace(RobbddError):
 
 
 def write_trace(path: Path, evidence: Evidence, views: Iterable[View]) -> None:
-    """Write a trace and its messages for viewers; raises ``OSError``, and ``TypeError`` as ``pack``."""
-    data = pack(evidence)
+    """Write a trace and its messages for viewers; raises ``OSError``, and ``TypeError`` as ``pack_parts``."""
+    parts = _joined(pack_parts(evidence))
+    first = next(parts)
     path.parent.mkdir(exist_ok=True)
     with replacing_bytes(path) as file:
         writer = Writer(file)
         writer.start(library=LIBRARY)
         channel = writer.register_channel(TRACE, ENCODING, writer.register_schema("robbdd.Trace", "", b""))
-        writer.add_message(channel, 0, data, 0)
+        for data in chain([first], parts):
+            writer.add_message(channel, 0, data, 0)
         channels: dict[str, int] = {}
         for time, topic, message in views:
             if topic not in channels:
@@ -101,8 +106,9 @@ def read_trace(path: Path) -> Evidence:
     """Restore a trace; raises ``UnreadableTrace``."""
     try:
         with open_regular(path) as file:
-            for _, _, message in make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE]):
-                return unpack(message.data)
+            found = make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE], log_time_order=False)
+            if parts := [message.data for _, _, message in found]:
+                return unpack(parts[0] if len(parts) == 1 else b"".join(parts))
     except Exception as error:  # Each decoder raises exceptions of its own types for damaged bytes.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     raise UnreadableTrace(f"{path} holds no trace")
@@ -118,6 +124,18 @@ def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[flo
     except Exception as error:  # Each decoder raises exceptions of its own types for damaged bytes.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     return found
+
+
+def _joined(parts: Iterable[bytes]) -> Iterator[bytes]:
+    """Join parts of a trace to messages. A trace of an hour has too many bytes for one message."""
+    found = bytearray()
+    for part in parts:
+        found += part
+        if len(found) >= MESSAGE:
+            yield bytes(found)
+            found.clear()
+    if found:
+        yield bytes(found)
 
 
 def _wrong_with_it(error: Exception) -> str:

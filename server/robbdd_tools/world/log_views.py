@@ -11,6 +11,8 @@ from robbdd_tools.world.drawn_shapes import DIGITS, color, geometry, shown_geoms
 from robbdd_tools.world.engine import mujoco
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.monitor.trace import Trace
@@ -77,27 +79,36 @@ def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]
     yield 0.0, "/scene", {"deletions": [], "entities": [_entity(name, solids[name]) for name in solids]}
     if not seen:
         return
+    rows = _shown(trace.times)
     columns = [trace.column(name) for name in seen]
-    places, turns = _last_known(trace.positions[:, columns]), _last_known(trace.orientations[:, columns])
-    shown = -np.inf
-    for row, time in enumerate(trace.times.tolist()):
-        if time >= shown + PERIOD or row == len(trace.times) - 1:
-            shown = time
-            yield time, "/tf", {"transforms": _frames(time, seen, places[row].tolist(), turns[row].tolist())}
+    known = [_last_known(trace, column)[rows] for column in columns]
+    places, turns = (
+        np.stack([values[row, column] for row, column in zip(known, columns, strict=True)], axis=1).round(DIGITS)
+        for values in (trace.positions, trace.orientations)
+    )
+    for time, place, turn in zip(trace.times[rows].tolist(), places, turns, strict=True):
+        yield time, "/tf", {"transforms": _frames(time, seen, place.tolist(), turn.tolist())}
+
+
+def _shown(times: FloatArray) -> list[int]:
+    """Return the samples of which there are pictures: one per ``PERIOD``, and the last one."""
+    found, shown = list[int](), -np.inf
+    for row, time in enumerate(times):
+        if time >= shown + PERIOD or row == len(times) - 1:
+            found.append(row)
+            shown = float(time)
+    return found
 
 
 def _is_seen(trace: Trace, name: str) -> bool:
     return bool(np.isfinite(trace.positions[:, trace.column(name)]).any())
 
 
-def _last_known(values: FloatArray) -> FloatArray:
-    """Replace each missing value (n, m, k) by the last known value before it, or else by the first one after it."""
-    missing = np.isnan(values).any(axis=2)
-    rows = np.where(missing, -1, np.arange(len(values))[:, None])
-    rows = np.maximum.accumulate(rows, axis=0)
-    first = np.argmin(missing, axis=0)
-    rows = np.where(rows < 0, first, rows)
-    return np.take_along_axis(values, rows[:, :, None], axis=0).round(DIGITS)
+def _last_known(trace: Trace, column: int) -> NDArray[np.intp]:
+    """Return for each sample the last one at which a body was observed, or else the first one after it, shape (n,)."""
+    missing = np.isnan(trace.positions[:, column]).any(axis=1) | np.isnan(trace.orientations[:, column]).any(axis=1)
+    rows = np.maximum.accumulate(np.where(missing, -1, np.arange(len(trace.times))))
+    return np.where(rows < 0, int(np.argmin(missing)), rows)
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:

@@ -49,4 +49,5 @@ ARE_SORTED_CORRECTLY = Predicate(
     ),
     measured="length",
     evaluate=margin,
+    pointwise=True,
 )

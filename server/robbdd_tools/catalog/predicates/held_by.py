@@ -43,4 +43,5 @@ HELD_BY = Predicate(
     doc="The agent's gripping faces are in contact with the object from both sides.",
     measured="nothing",
     evaluate=margin,
+    pointwise=True,
 )

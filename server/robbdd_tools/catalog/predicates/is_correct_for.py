@@ -38,5 +38,6 @@ IS_CORRECT_FOR = Predicate(
     ),
     measured="nothing",
     evaluate=margin,
+    pointwise=True,
     set_up=True,
 )

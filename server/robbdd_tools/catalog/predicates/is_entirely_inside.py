@@ -34,4 +34,5 @@ IS_ENTIRELY_INSIDE = Predicate(
     doc="The whole object lies inside the workspace: nothing sticks out at the sides or at the top.",
     measured="length",
     evaluate=margin,
+    pointwise=True,
 )

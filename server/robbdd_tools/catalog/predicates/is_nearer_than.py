@@ -38,5 +38,6 @@ IS_NEARER_THAN = Predicate(
     doc="The positions of two elements (centre of an object, tool of an agent) are less than a distance apart.",
     measured="length",
     evaluate=margin,
+    pointwise=True,
     unit_for=unit,
 )

@@ -41,5 +41,6 @@ IS_TILTED_LESS_THAN = Predicate(
     doc="The object's own z axis deviates from the vertical by less than an angle, such as 10 deg.",
     measured="angle",
     evaluate=margin,
+    pointwise=True,
     unit_for=unit,
 )

@@ -34,4 +34,5 @@ LOCATED_AT = Predicate(
     doc="The object's position (with whole_object its whole body) lies inside a bin, or above a table top.",
     measured="length",
     evaluate=margin,
+    pointwise=True,
 )

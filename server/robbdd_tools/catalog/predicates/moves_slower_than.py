@@ -39,5 +39,6 @@ MOVES_SLOWER_THAN = Predicate(
     doc="The agent's tool moves slower than a speed, such as 0.25 m/s.",
     measured="speed",
     evaluate=margin,
+    pointwise=True,
     unit_for=unit,
 )

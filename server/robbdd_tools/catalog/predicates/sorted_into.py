@@ -46,4 +46,5 @@ SORTED_INTO = Predicate(
     doc="Every object of the set lies in some workspace of the set; with exactly_one in only one.",
     measured="length",
     evaluate=margin,
+    pointwise=True,
 )
