@@ -67,6 +67,22 @@ def test_a_drive_that_puts_the_cube_into_the_bin_holds(models: Path, tmp_path: P
     assert "the log does not report crit:evt-end: the end of the log counts" in remarks
 
 
+def test_a_bin_that_is_stated_to_be_somewhere_was_not_seen_to_stay_there(models: Path, tmp_path: Path) -> None:
+    """A static transform says where somebody put the bin, not whether the arm has pushed it."""
+    static = [transform("bin_left", (0.55, 0.3, 0.8), stamp=0.0, topic="/tf_static")]
+    found, _ = judged(models, tmp_path, [*static, *without("bin_left")])
+    assert verdicts(found)["goal-untouched"] == "unknown"
+    (untouched,) = (one for one in found if one["name"].endswith("goal-untouched"))
+    words = "the log does not observe env:bin_left: its place is that of a static transform or of the .scenex"
+    assert untouched["reason"] == f"{words}, so whether it moved is not known"
+    assert verdicts(found)["at-goal"] == "holds", "where the bin is counts as known"
+
+
+def without(frame: str) -> list[Message]:
+    """A drive without one of its frames."""
+    return [one for one in drive() if one.topic != "/tf" or one.make(ROS2).transforms[0].child_frame_id != frame]
+
+
 def test_a_cube_beside_the_bin_violates(models: Path, tmp_path: Path) -> None:
     found, _ = judged(models, tmp_path, drive(end=(0.55, 0.0, 0.825)))
     assert verdicts(found)["at-goal"] == "violated"

@@ -37,11 +37,12 @@ def drive(
 ) -> list[Message]:
     """Write what a real cell would record, at 50 Hz for 10 s: a cube is carried from the table to a place.
 
+    The cell observes the cube, the tool and the left bin; the table and the right bin are stated to be where they are.
+
     From the first to the second time of ``lost``, the cube is not seen; ``cube`` is its frame.
     """
     found = [
         transform("table", (0.5, 0.0, 0.8), stamp=0.0, topic="/tf_static"),
-        transform("bin_left", (0.55, 0.3, 0.8), stamp=0.0, topic="/tf_static"),
         transform("bin_right", (0.55, -0.3, 0.8), stamp=0.0, topic="/tf_static"),
         text("pick-start", 1.0),
         text("pick-end", 3.0),
@@ -59,6 +60,7 @@ def drive(
         place = [one + share * (other - one) for one, other in zip(begin, end, strict=True)]
         if lost is None or not lost[0] < time < lost[1]:
             found.append(transform(cube, (place[0], place[1], place[2] + lift), stamp=time))
+        found.append(transform("bin_left", (0.55, 0.3, 0.8), stamp=time))
         found.append(transform("panda", (place[0], place[1], place[2] + lift), stamp=time))
     return found
 

@@ -108,6 +108,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         joint_clearances={
             agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
         },
+        stated=tuple(name for name in known if name in cast.objects and frames.is_stated(name)),
         immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
     )
     trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)

@@ -90,6 +90,10 @@ class Frames:
         used = [one for frame in found for one in (self._tracks[frame], *self._tracks[frame].later)]
         return [track.times for track in used if not track.static]
 
+    def is_stated(self, element: str) -> bool:
+        """Return whether the place of an element is stated, by static transforms or the ``.scenex``, not observed."""
+        return element not in self.of or self._is_fixed(self.of[element])
+
     def poses(self, element: str, times: FloatArray) -> Poses | None:
         """Return the poses of an element's frame at some times (n,) s; ``None`` if it has none."""
         return self._poses(self.of[element], times) if element in self.of else None

@@ -157,6 +157,10 @@ class Evidence(Protocol):
         """Return how far a thing with a joint is open, at each of the n samples."""
         ...
 
+    def need_motion(self, name: str) -> None:
+        """Raise an error for which the monitor returns *unknown* if the motion of an element was not observed."""
+        ...
+
     def is_immovable(self, name: str) -> bool:
         """Return whether an element does not move when it is hit. Fixed objects and agents are immovable."""
         ...

@@ -84,6 +84,7 @@ class Trace:
     - ``impulses``: like ``forces``, for the impulse (N s) since the previous sample.
     - ``contacts``: the list of these contacts.
     - ``immovable``: the elements that do not move when they are hit: fixed objects, and agents.
+    - ``stated``: the objects of a log whose places are stated instead of observed, by static transforms or the scene.
     - ``outlines``: the extent of each object around its position.
     - ``unreached``: the reason if the scenario is a part of a behaviour tree that never began; then it is not judged.
     - ``contents``: maps a workspace to the workspaces inside it, at any depth.
@@ -135,6 +136,7 @@ class Trace:
     uncertain: Mapping[str, float] = field(default_factory=dict[str, float])
     defined: Mapping[str, str] = field(default_factory=dict[str, str])
     doubts: tuple[Doubt, ...] = ()
+    stated: tuple[str, ...] = ()
 
     @property
     def end(self) -> float:

@@ -30,6 +30,8 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
     agent, carriers = str(arguments["agent"]), carriers_of(evidence, str(arguments["target"]))
     by_force, by_way = _split(evidence, carriers)
+    for carrier in by_way:
+        evidence.need_motion(carrier)
     force_limit = limit_of(evidence, carriers, "force_limit") or FORCE_LIMIT
     way_limit = limit_of(evidence, carriers, "displacement_limit") or LIMIT
     forces = [force_limit - evidence.force(agent, carrier) for carrier in by_force]
