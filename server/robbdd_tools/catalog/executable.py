@@ -270,6 +270,20 @@ class Friction:
 
 
 @dataclass(frozen=True, slots=True)
+class WorkspaceBox:
+    """A space of a workspace, given in place of those of the models that carry it.
+
+    ``offset`` is the centre of the box in the frame of the model, and ``size`` has its edges along the axes of this
+    frame, both in m.
+    """
+
+    workspace: str
+    offset: tuple[float, ...]
+    size: tuple[float, ...]
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class SceneInstance:
     """An executable scene: models of the whole scene, models of its elements, and the placements of bodies.
 
@@ -289,3 +303,4 @@ class SceneInstance:
     scene: str = ""
     frictions: tuple[Friction, ...] = ()
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    boxes: tuple[WorkspaceBox, ...] = ()

@@ -58,6 +58,7 @@ _SPEED = _Quantity("a speed limit", above=True)
 _WHOLE_TURN = {"deg": 360.0, "rad": 2 * pi}
 _REPEAT = _Quantity("the number of repetitions", low=1.0, whole=True)
 _SEED = _Quantity("a seed", high=setting_of("seed").high, whole=True)
+_EDGE = _Quantity("an edge of a box", above=True)
 _TIMEOUT = _Quantity("a timeout", above=True)
 _Measured = tuple[tree.Number | None, _Quantity]
 
@@ -113,6 +114,8 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
             yield node.stroke, _Quantity("a stroke", above=True)
         case tree.Model() if node.velocity is not None:
             yield from ((number, _SPEED) for number in _numbers(node.velocity))
+        case tree.WorkspaceBox():
+            yield from ((number, _EDGE) for number in _numbers(node.size))
         case tree.LinearDistance():
             yield node.max_time_offset, _Quantity("a time offset")
         case tree.Distance():

@@ -27,10 +27,19 @@ def pose(site: Site) -> Iterator[Diagnostic]:
     if not isinstance(site.tree, tree.SceneInstance | tree.KinematicTree):
         return
     for node in walk(site.tree):
+        if isinstance(node, tree.WorkspaceBox):
+            yield from _box(site, node)
         if isinstance(node, tree.Pose) and site.whole(node):
             yield from _position(site, node.position)
             orientation = node.orientation
             yield from _orientation(site, orientation if isinstance(orientation, tree.Sample) else orientation.value)
+
+
+def _box(site: Site, box: tree.WorkspaceBox) -> Iterator[Diagnostic]:
+    for written, what in ((box.offset, "an offset"), (box.size, "a size")):
+        count = 3 if written is None else len(numbers_of(written))
+        if written is not None and count != 3:
+            yield _described(site, written, f"{what} needs 3 numbers, not {count}")
 
 
 def _position(site: Site, written: tree.Vector | tree.Sample) -> Iterator[Diagnostic]:

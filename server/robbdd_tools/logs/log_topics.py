@@ -99,9 +99,9 @@ def _ros_fields(kind: str, defined: Definitions, depth: int = 0) -> Iterator[tup
             yield path, str(of[0])
 
 
-def _json_fields(schema: Any, depth: int = 0) -> Iterator[tuple[str, str]]:
+def _json_fields(schema: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, str]]:
     """Yield the paths and types of the properties of a JSON schema."""
-    properties = cast("dict[str, Any]", schema).get("properties", {}) if isinstance(schema, dict) else {}
+    properties = cast("dict[str, dict[str, Any]]", schema.get("properties", {}))
     for name, described in properties.items() if depth <= MAX_DEPTH else ():
         kind = str(described.get("type", ""))
         path, inner = (f"{name}[0]", described.get("items", {})) if kind == "array" else (name, described)

@@ -114,7 +114,8 @@ class SpecWriter:
         frictions = tuple(
             replace(one, first=self._curie(one.first), second=self._curie(one.second)) for one in scene.frictions
         )
-        return replace(scene, elements=elements, frictions=frictions)
+        boxes = tuple(replace(one, workspace=self._curie(one.workspace)) for one in scene.boxes)
+        return replace(scene, elements=elements, frictions=frictions, boxes=boxes)
 
     def _policy(self, policy: Policy) -> Policy:
         return replace(policy, observations=tuple(self._observation(one) for one in policy.observations))

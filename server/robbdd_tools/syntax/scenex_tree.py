@@ -140,11 +140,21 @@ class Sensor(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class WorkspaceBox(Node):
+    """``box { offset: (…) m size: (…) m }``: a space of a workspace, in the frame of the object that carries it."""
+
+    offset: Vector | None
+    offset_unit: str | None
+    size: Vector
+    size_unit: str
+
+
+@dataclass(frozen=True, slots=True)
 class Modelled(Node):
     """``obj <…> { … }``, ``obj set``, ``ws``, ``agn``, ``agn set``: the models of an element of the scene."""
 
     reference: Ref
-    entries: tuple[Model | Camera | Sensor | Modelled, ...]
+    entries: tuple[Model | Camera | Sensor | WorkspaceBox | Modelled, ...]
 
 
 @dataclass(frozen=True, slots=True)

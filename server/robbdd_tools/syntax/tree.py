@@ -65,6 +65,7 @@ from robbdd_tools.syntax.bddx_tree import (
     Transforms,
     TrinaryTopic,
 )
+from robbdd_tools.syntax.chunk_tree import ChunkTree, DeclarationTree
 from robbdd_tools.syntax.kinematics_tree import (
     Actuation,
     Axes,
@@ -152,6 +153,7 @@ from robbdd_tools.syntax.scenex_tree import (
     SystemPath,
     Uniform,
     UniformRotation,
+    WorkspaceBox,
 )
 from robbdd_tools.syntax.time_tree import After, Before, During, TimeConstraint
 from robbdd_tools.syntax.variation_tree import (
@@ -165,34 +167,6 @@ from robbdd_tools.syntax.variation_tree import (
     Value,
     ValueList,
 )
-
-DeclarationTree = (
-    Import
-    | Namespace
-    | ElementSet
-    | SimilarSet
-    | Composition
-    | Scene
-    | Event
-    | Task
-    | Requirement
-    | NamedPredicate
-    | BehaviourTree
-    | ConstantSet
-    | Template
-    | Story
-    | Distribution
-    | KinematicTree
-    | TreeInstance
-    | SceneInstance
-    | Implementation
-    | Provider
-    | Observation
-    | Policy
-    | RobotLog
-    | Execution
-)
-ChunkTree = DeclarationTree | Variant  # The tree of a ``Declaration``; a scenario parsed by itself is one, too.
 
 __all__ = [
     "Actuation",
@@ -348,5 +322,6 @@ __all__ = [
     "Vector",
     "When",
     "Where",
+    "WorkspaceBox",
     "bare",
 ]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import RobotModel
+from robbdd_tools.catalog.api import Region, RobotModel
 from robbdd_tools.catalog.object_settings import can_move, object_has
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robbdd_tools.base.articulation import Opening
-    from robbdd_tools.catalog.api import ObjectModel, Region
-    from robbdd_tools.catalog.executable import Origin
+    from robbdd_tools.catalog.api import ObjectModel, Vector
+    from robbdd_tools.catalog.executable import Origin, WorkspaceBox
     from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
     from robbdd_tools.world.pose import Pose
@@ -150,6 +150,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     configure(found, ((config, _elements(scene, config.target)) for config in (*scene.config, *stated)))
     objects |= {name: centred(model) for name, model in objects.items()}
     regions = _regions(scene, objects)
+    regions |= _stated_regions(scene, objects, regions, () if staging is None else staging.boxes)
     return Cast(
         objects,
         agents,
@@ -236,6 +237,33 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
         if boxes:
             regions[workspace] = tuple(boxes)
     return regions
+
+
+def _stated_regions(
+    scene: SceneSpec,
+    objects: Mapping[str, ObjectModel],
+    regions: Mapping[str, tuple[tuple[str, Region], ...]],
+    stated: Iterable[WorkspaceBox],
+) -> dict[str, tuple[tuple[str, Region], ...]]:
+    """Return the regions of the workspaces whose boxes an executable scene states.
+
+    A box in a walled object, such as a bin, has its walls around it.
+    """
+    found: dict[str, tuple[tuple[str, Region], ...]] = {}
+    for box in stated:
+        walled = any(region.walled for _, region in regions.get(box.workspace, ()))
+        for carrier in carriers(scene, box.workspace):
+            if carrier in objects:
+                center = tuple(one + other for one, other in zip(objects[carrier].frame, box.offset, strict=True))
+                region = Region(vector(center), vector(edge / 2 for edge in box.size), walled=walled)
+                found[box.workspace] = (*found.get(box.workspace, ()), (carrier, region))
+    return found
+
+
+def vector(values: Iterable[float]) -> Vector:
+    """Return three numbers as a vector."""
+    x, y, z = values
+    return x, y, z
 
 
 def _spaces(carrier: str, workspace: str, objects: Mapping[str, ObjectModel]) -> list[tuple[str, Region]]:

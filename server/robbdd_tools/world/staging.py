@@ -56,6 +56,7 @@ class Staging:
         """Raises ``SceneError`` if a model of the whole scene cannot be loaded."""
         self._elements = {one.element: one for one in instance.elements}
         self.frictions = instance.frictions
+        self.boxes = instance.boxes
         self._frames = Frames(instance, seed)
         self._found: dict[str, FromFile] = {}
         self._files: dict[str, FromFile] = {}

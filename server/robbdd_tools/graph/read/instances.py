@@ -17,6 +17,7 @@ from robbdd_tools.catalog.executable import (
     Origin,
     Realisation,
     SceneInstance,
+    WorkspaceBox,
     spherical,
 )
 from robbdd_tools.graph.acceptance_model import Iri
@@ -87,6 +88,7 @@ class InstanceReader:
             self._places(node),
             next(iter(records.iris(records.all(node, "rbw:scene"))), ""),
             tuple(pair for part in self._list(node, "rbw:frictions") for pair in self._friction(part)),
+            tuple(box for part in self._list(node, "rbw:realisations") for box in self._boxes(part)),
         )
 
     def _list(self, node: str, term: str) -> tuple[Iri, ...]:
@@ -229,6 +231,15 @@ class InstanceReader:
         for one, other in product(first, second):
             if value is not None and one != other:
                 yield Friction(one, other, value, self._places(node))
+
+    def _boxes(self, node: Iri) -> Iterator[WorkspaceBox]:
+        """Yield the spaces of a workspace. A box without three edges of a length is left out: a check reports it."""
+        records = self._records
+        for workspace in records.iris(records.all(node, "rbw:realises")):
+            for box in self._list(node, "rbw:boxes"):
+                offset, size = self._numbers(box, "rbw:position") or (0.0, 0.0, 0.0), self._numbers(box, "rbw:edges")
+                if len(offset) == len(size) == 3 and min(size) > 0:
+                    yield WorkspaceBox(workspace, offset, size, self._places(box))
 
     def _members(self, node: Iri) -> tuple[Iri, ...]:
         return tuple(entry for entry in self._sets.get(node, (node,)) if isinstance(entry, Iri))

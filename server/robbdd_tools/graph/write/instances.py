@@ -150,9 +150,25 @@ class _InstanceWriter:
         sink.add(node, "rbw:models", sink.make_list(self._models(instance, modelled.entries)))
         sensors = [self._sensor(instance, entry) for entry in modelled.entries]
         sink.add(node, "rbw:sensors", sink.make_list(sensors))
+        boxes = [entry for entry in modelled.entries if isinstance(entry, tree.WorkspaceBox)]
+        if boxes:
+            written = [self._box(sink.iri(f"{node}.box{number}"), box) for number, box in enumerate(boxes)]
+            sink.add(node, "rbw:boxes", sink.make_list(written))
         for entry in modelled.entries:
             if isinstance(entry, tree.Modelled):
                 self._element(instance, entry)
+
+    def _box(self, node: URIRef | None, box: tree.WorkspaceBox) -> URIRef | None:
+        sink, frame = self._sink, self._frame
+        if node is None:
+            return None
+        sink.add_types(node, ["rbw:WorkspaceBox"], frame.at(box))
+        written = ((("rbw:position", box.offset, box.offset_unit)), ("rbw:edges", box.size, box.size_unit))
+        for term, vector, unit in written:
+            if vector is not None:
+                metres = [sink.literal(number * LENGTHS[unit or "m"]) for number in numbers_of(vector)]
+                sink.add(node, term, sink.make_list(metres), frame.at(vector))
+        return node
 
     def _models(self, instance: URIRef, entries: Iterable[tree.Node]) -> list[URIRef | None]:
         return [self._model(instance, entry) for entry in entries if isinstance(entry, tree.Model)]
