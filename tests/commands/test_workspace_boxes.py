@@ -54,8 +54,8 @@ def test_the_same_box_decides_in_simulation(tmp_path: Path) -> None:
     (scenario,) = json.loads(out.read_text(encoding="utf-8"))["scenarios"]
     (goal,) = (one for one in scenario["clauses"] if one["name"].endswith("at-goal"))
     assert goal["verdict"] == "holds"
-    # The centre of the cube is 21 mm above the frame of the bin, and the box begins at 10 mm. The catalog's region begins
-    # at 5 mm, and its margin is 16 mm.
+    # The centre of the cube is 21 mm above the frame of the bin, and the box begins at 10 mm. The catalog's region
+    # begins at 5 mm, and its margin is 16 mm.
     assert 0 < goal["robustness"] < 0.012
 
 

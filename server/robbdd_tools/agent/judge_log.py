@@ -58,6 +58,7 @@ from robbdd_tools.protocol.run_folder import curves_file, trace_file
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import write_trace
+from robbdd_tools.user_code.calls import UserCodeError
 from robbdd_tools.world.composition import compile_objects
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.log_views import observed_views, verdict_views
@@ -73,9 +74,13 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
     contents = (yield from _follow(request, spec, early)) if whole is None else whole
     try:
         found = evidence_of(spec, contents, request)
-    except SceneError as error:
+    except (SceneError, UserCodeError) as error:
+        cause = Cause.SCENE
+        if isinstance(error, UserCodeError):
+            cause = Cause.USER_CODE
+            yield UserCodeFailed(0, error.fault)
         for clause in spec.clauses:
-            yield judged(0, clause.line, unknown(str(error), Cause.SCENE))
+            yield judged(0, clause.line, unknown(str(error), cause))
         yield ScenarioFinished(0, contents.end, perf_counter() - began, 0.0)
         yield RunFinished(True)
         return
@@ -132,7 +137,7 @@ def _follow(
     check_events([read_event_signal(one).event for one in request.signals], spec)
     contents = LogContents({})
     for contents in growing_contents(request):
-        with suppress(RobbddError, SceneError):
+        with suppress(RobbddError, SceneError, UserCodeError):
             # A topic that the user names does not exist before its first message.
             evidence = evidence_of(spec, _completed(contents, request, spec), request).evidence
             for clause in spec.clauses:

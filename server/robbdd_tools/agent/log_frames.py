@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.agent.log_mappers import mapped_frames
 from robbdd_tools.catalog.base_frames import BASE_FRAMES
 from robbdd_tools.logs.log_contents import Track
 from robbdd_tools.logs.log_names import (
@@ -64,9 +65,11 @@ class Frames:
         self._remarks = remarks
         self.of: dict[str, str] = {}
         """Frame of each element."""
-        stated = {**stated_frames(spec), **elements_of(request.frames, (*cast.objects, *cast.agents))}
+        elements = (*cast.objects, *cast.agents)
+        mapped = mapped_frames(spec, contents.tracks, elements)
+        stated = {**mapped, **stated_frames(spec), **elements_of(request.frames, elements)}
         problems: dict[str, str] = {}
-        for element in (*cast.objects, *cast.agents):
+        for element in elements:
             try:
                 found = tool_frame_of if element in cast.agents else frame_of
                 self.of[element] = frame = found(element, contents.tracks, stated)

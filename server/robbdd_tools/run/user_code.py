@@ -55,6 +55,21 @@ def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates:
     return f"{'; '.join(found)}: {fix}" if found else ""
 
 
+def refuse_mappers(manifest: Manifest) -> None:
+    """Raise ``UserCodeRefused`` if users' code, which may not run, maps the frames of a log to elements."""
+    reason = os.environ.get(NO_USER_CODE)
+    executions = [spec.execution for spec in manifest.scenarios if reason and spec.execution is not None]
+    found = dict.fromkeys(
+        f"{policy.origin or observation.iri}: the Python code {observation.entity_mapper} maps the frames of the log"
+        for execution in executions
+        for policy in execution.policies
+        for observation in policy.observations
+        if observation.entity_mapper
+    )
+    if found:
+        raise UserCodeRefused(f"{'; '.join(found)}: {_FIXES.get(reason or '', _FIX)}")
+
+
 def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> Iterator[str]:
     for spec in manifest.scenarios:
         if spec.instance is not None and simulates:

@@ -21,7 +21,7 @@ from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.scheduler import CANCELLED, Scheduler
 from robbdd_tools.run.store import RunRecord, relative_model_path, shown_path
 from robbdd_tools.run.used_files import digests, prepared_digest
-from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.run.user_code import refuse_mappers, refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result, execution_results
 from robbdd_tools.workbench.judged_text import write_texts
 from robbdd_tools.workbench.recorded_requirements import write_requirements
@@ -305,6 +305,8 @@ def begin_recording(
     """
     manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept if traces is None else traces)
     refuse_user_code(manifest, place.folder)
+    if log is not None:
+        refuse_mappers(manifest)
     recording = Recording(place, manifest)
     try:
         record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
