@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.logs.ros2_bag import write_ros2_bag
+from robbdd_tools.logs.ros2_bag import DrawnScene, write_ros2_bag
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.traces.mcap_file import read_trace, read_views
@@ -23,8 +23,10 @@ def _main() -> int:
         cast = cast_scene(spec.scene, staging)
         frames = {name: model.frame for name, model in cast.objects.items()}
         path = trace_file(folder, index)
-        joints = read_views(path, ["/joints"])["/joints"]
-        write_ros2_bag(out, read_trace(path).trace, frames, joints, mcap=storage == "mcap")
+        views = read_views(path, ["/joints", "/geometry", "/tf"])
+        scene = DrawnScene(views["/geometry"][0][1], views["/tf"]) if views["/geometry"] else None
+        trace = read_trace(path).trace
+        write_ros2_bag(out, trace, frames, views["/joints"], scene=scene, mcap=storage == "mcap")
     except (RobbddError, SceneError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
