@@ -6,7 +6,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import accumulate
+from itertools import accumulate, count
+from operator import add
 
 LATEST = 16
 """Number of texts whose lines are kept."""
@@ -79,7 +80,8 @@ class Document:
 def _line_starts(text: str) -> tuple[int, ...]:
     """Return the offsets of the lines. Several documents have the same text, such as the one that a client has open."""
     if "\r" not in text:
-        return (0, *accumulate([len(line) + 1 for line in text.split("\n")[:-1]]))
+        lengths = map(len, text.split("\n")[:-1])
+        return tuple(map(add, accumulate(lengths, initial=0), count()))
     starts = [0]
     index = 0
     while True:

@@ -106,7 +106,7 @@ def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[t
         checkpoint()
         if end < placed.offset:
             found.append((end, _between(text[end : placed.offset])))
-        end = placed.span.end
+        end = placed.offset + len(placed.declaration.text)
         if within is None or (placed.offset <= within.end and within.start <= end):
             found.append((placed.offset, _of_declaration(snapshot, analysis, placed, tables)))
     found.append((end, _between(text[end:])))

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lsprotocol import types
 
@@ -57,9 +57,11 @@ class _Runnable:
         return types.Command(title=title, command=command, arguments=[target])
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
-    """Data on which the lenses of a variant depend in addition to its text. A variant without an IRI has no lenses."""
+class _State(NamedTuple):
+    """Data on which the lenses of a variant depend in addition to its text. A variant without an IRI has no lenses.
+
+    A tuple, because thousands of them are made and compared after each keystroke.
+    """
 
     iri: str | None
     number: int | None
