@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.campaign.study_clauses import clause_named, clause_words
 from robbdd_tools.campaign.value_bins import bins_of, in_order
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.report import value_word, variable_word
@@ -87,7 +88,7 @@ def margins(rows: Iterable[Row], clause: str, factor: str) -> Margins:
     judged: list[tuple[Mapping[str, Any], float | None]] = []
     for row in rows:
         known[row["clause"]] = None
-        if row["clause"] == clause:
+        if clause in (row["clause"], clause_words(row["clause"])):
             margin = row["margin"] if row["scenario_verdict"] == HOLDS else None
             unit = unit if margin is None else row["unit"]
             judged.append((_levels(row), None if margin is None else float(margin)))
@@ -96,8 +97,8 @@ def margins(rows: Iterable[Row], clause: str, factor: str) -> Margins:
     for levels, (_, margin) in zip(every, judged, strict=True):
         if margin is not None:
             found.setdefault(levels.get(factor, ""), []).append(margin)
-    if clause not in known:
-        raise NoSuchFactor(f"the study has no clause '{clause}'; it has {', '.join(known)}")
+    if clause_named(clause, known) is None:
+        raise NoSuchFactor(f"the study has no clause '{clause}'; it has {', '.join(map(clause_words, known))}")
     _refuse_unknown(factor, every)
     return Margins(clause, factor, unit, {level: found[level] for level in in_order(found, _bins(factor, bins))})
 
@@ -108,7 +109,7 @@ def _executions(rows: Iterable[Row]) -> Iterator[tuple[Mapping[str, Any], str]]:
         clauses = list(group)
         first = next((row for row in clauses if row["verdict"] == Outcome.VIOLATED), None)
         verdict = clauses[0]["scenario_verdict"]
-        yield _levels(clauses[0]), verdict if first is None else str(first["clause"])
+        yield _levels(clauses[0]), verdict if first is None else clause_words(str(first["clause"]))
 
 
 def _levels(row: Row) -> Mapping[str, Any]:

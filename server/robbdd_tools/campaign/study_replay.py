@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
+from robbdd_tools.campaign.study_clauses import clause_named, clause_words
 from robbdd_tools.campaign.study_place import RUNS, StudyProblem
 from robbdd_tools.run.results import unjudged
 from robbdd_tools.run.store import RunStore
@@ -36,7 +37,7 @@ class Chosen:
 
     - ``numbers``: their numbers in the study; empty for all.
     - ``failures``: only those that do not hold.
-    - ``clause``: only those in which the clause of this name does not hold.
+    - ``clause``: only those in which the clause of this name, or of these words, does not hold.
     - ``first``: at most this many, in the order of the study.
     """
 
@@ -49,9 +50,8 @@ class Chosen:
         """Return the executions in the order of the study. Raises ``NothingChosen`` and ``DatabaseProblem``."""
         if not (self.numbers or self.failures or self.clause):
             raise NothingChosen("name executions by their numbers in the export, or write --failures or --clause NAME")
-        if self.clause and self.clause not in (known := [one.name for one in store.clauses()]):
-            raise NothingChosen(f"there is no clause '{self.clause}'; the study has {', '.join(known)}")
-        found = list(store.executions(failures=self.failures, clause=self.clause))
+        clause = _known_clause(self.clause, store) if self.clause else ""
+        found = list(store.executions(failures=self.failures, clause=clause))
         numbers = {one.number for one in found}
         missing = [one for one in self.numbers if one not in numbers]
         if missing:
@@ -64,6 +64,14 @@ class Chosen:
                 "no execution failed" if not self.clause else f"'{self.clause}' holds in all executions"
             )
         return found[: self.first]
+
+
+def _known_clause(text: str, store: StudyReader) -> str:
+    names = [one.name for one in store.clauses()]
+    name = clause_named(text, names)
+    if name is None:
+        raise NothingChosen(f"there is no clause '{text}'; the study has {', '.join(map(clause_words, names))}")
+    return name
 
 
 class StudyReplay:

@@ -13,6 +13,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.processes import CTRL_C, end_requests
 from robbdd_tools.campaign.coverage import coverage_lines, goals_of, study_coverage
 from robbdd_tools.campaign.stopping import RatioTest, Ruling
+from robbdd_tools.campaign.study_clauses import clause_words
 from robbdd_tools.campaign.study_cleaning import clean, kept_sizes
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_place import (
@@ -232,7 +233,7 @@ def _print_results(store: StudyReader) -> None:
         shown = margin(clause.least, clause.unit)
         least = f"; smallest margin {shown}" if shown else ""
         others = f"{clause.violated} violated, {clause.unknown} unknown"
-        print_line(f"{clause.name}: {clause.holds} of {total} hold, {others}{least}")
+        print_line(f"{clause_words(clause.name)}: {clause.holds} of {total} hold, {others}{least}")
 
 
 def _print_status(folder: Path, goals: Mapping[str, float]) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.campaign.factor_rates import LevelRate
+from robbdd_tools.campaign.study_clauses import clause_words
 from robbdd_tools.commands.rate_lines import level_line
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.workbench.time_estimate import TimeEstimate
@@ -23,7 +24,7 @@ def standing(tally: Tally) -> Iterator[str]:
     if worst is not None:
         name, counts = worst
         failing = f"{counts[Outcome.VIOLATED]} violated and {counts[Outcome.UNKNOWN]} unknown"
-        yield f"worst clause: {name}, {failing} of {counts.total()}"
+        yield f"worst clause: {clause_words(name)}, {failing} of {counts.total()}"
 
 
 def progress_words(progress: StudyProgress) -> str:
