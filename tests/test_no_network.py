@@ -186,7 +186,7 @@ async def test_no_request_contacts_a_server(
     async with asyncio.timeout(PATIENCE):
         while "shapes-unchecked" not in await _codes(client, model):
             await asyncio.sleep(0.02)
-    for method in ("robbdd/testResults", "robbdd/templates", "robbdd/tests"):
+    for method in ("robbdd/testResults", "robbdd/templates", "robbdd/tests", "robbdd/versions"):
         await client.protocol.send_request_async(method, {})
     symbols = types.WorkspaceSymbolParams(query="")
     await client.workspace_symbol_async(symbols)

@@ -70,7 +70,7 @@ export function activate(context: vscode.ExtensionContext): void {
     new Debugging(started, runs),
     scenes,
     ...registerCommands(started, runs, chooser, { previews, graphs, drawings, replays, studies, histories, comparisons, tests, scenes }, log, () =>
-      reportIssue({ extension: version, server: running }),
+      reportIssue(started, { extension: version, server: running }),
     ),
     vscode.window.registerUriHandler({
       handleUri: (uri) => replays.openLink(uri.toString(true)),
@@ -112,9 +112,10 @@ export function activate(context: vscode.ExtensionContext): void {
 }
 
 /** Open a new text with the versions of all parts, to be completed and sent. */
-async function reportIssue(parts: Pick<Versions, "extension" | "server">): Promise<void> {
+async function reportIssue(started: Server, parts: Pick<Versions, "extension" | "server">): Promise<void> {
   const editor = `${vscode.env.appName} ${vscode.version}`;
-  const content = reportText({ ...parts, editor, system: `${process.platform} ${process.arch}` });
+  const environment = parts.server === undefined ? undefined : await started.request("robbdd/versions", {});
+  const content = reportText({ ...parts, environment, editor, system: `${process.platform} ${process.arch}` });
   await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "markdown", content }));
 }
 

@@ -1,9 +1,12 @@
 // Versions of the parts: whether server and extension fit, and a text for a report.
+import { isServerVersions } from "./answers/validators.mjs";
 
 export interface Versions {
   readonly extension: string;
   /** undefined: no server runs. */
   readonly server: { readonly command: string; readonly version?: string | undefined } | undefined;
+  /** The server's answer to `robbdd/versions`. An older server gives none. */
+  readonly environment: unknown;
   /** Name and version of the editor. */
   readonly editor: string;
   readonly system: string;
@@ -16,8 +19,9 @@ export function fits(server: string, extension: string): boolean {
 }
 
 /** The beginning of a report: what happened, and what it happened with. */
-export function reportText({ extension, server, editor, system }: Versions): string {
+export function reportText({ extension, server, environment, editor, system }: Versions): string {
   const served = server === undefined ? "not running" : `${server.version ?? "of unknown version"} (${server.command})`;
+  const { python, mujoco } = isServerVersions(environment) ? environment : { python: "unknown", mujoco: "unknown" };
   return `# Issue with RobBDD
 
 What I did:
@@ -30,6 +34,8 @@ What happened (with the model, or a part of it that shows it):
 
 - extension: ${extension}
 - language server: ${served}
+- Python: ${python}
+- MuJoCo: ${mujoco ?? "not installed"}
 - editor: ${editor}
 - system: ${system}
 

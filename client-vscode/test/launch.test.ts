@@ -62,11 +62,19 @@ test("a server that does not fit is reported, once", async () => {
   ]);
 });
 
-test("a report names the versions of all parts", async () => {
-  await start("1.0.9");
-  await command("robbdd.reportIssue");
-  const text = editor.texts.at(-1) ?? "";
-  for (const line of ["extension: 1.0", `language server: 1.0.9 (${process.execPath})`, "editor: Editor 1.91.0", `system: ${process.platform}`]) {
-    assert.ok(text.includes(`- ${line}`), `${line} is not in ${text}`);
-  }
-});
+for (const [answer, python, mujoco] of [
+  [{ python: "CPython 3.11.7", mujoco: "4.0.0" }, "CPython 3.11.7", "4.0.0"],
+  [{ python: "CPython 3.11.7", mujoco: null }, "CPython 3.11.7", "not installed"],
+  [undefined, "unknown", "unknown"],
+] as const) {
+  test(`a report names the versions of all parts, with Python ${python} and MuJoCo ${mujoco}`, async () => {
+    await start("1.0.9");
+    LanguageClient.answers.set("robbdd/versions", () => answer);
+    await command("robbdd.reportIssue");
+    const text = editor.texts.at(-1) ?? "";
+    const served = `language server: 1.0.9 (${process.execPath})`;
+    for (const line of ["extension: 1.0", served, `Python: ${python}`, `MuJoCo: ${mujoco}`, "editor: Editor 1.91.0", `system: ${process.platform}`]) {
+      assert.ok(text.includes(`- ${line}\n`) || text.includes(`- ${line} `), `${line} is not in ${text}`);
+    }
+  });
+}

@@ -52,7 +52,7 @@ OF_DOCUMENT = (
     "selectionRange",
     "formatting",
 )
-OF_WORKSPACE = ("workspace/symbol", "robbdd/tests", "robbdd/testResults", "robbdd/templates")
+OF_WORKSPACE = ("workspace/symbol", "robbdd/tests", "robbdd/testResults", "robbdd/templates", "robbdd/versions")
 OF_URI = ("robbdd/preview", "robbdd/graph", "robbdd/scene", "robbdd/runs", "robbdd/tests")
 
 

@@ -33,6 +33,7 @@ from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.lsp.transport import end_after_loop
 from robbdd_tools.lsp.trust import forbid_user_code
 from robbdd_tools.lsp.user_errors import register_user_errors
+from robbdd_tools.lsp.versions import register_versions
 from robbdd_tools.lsp.watching import register_watching, watch_files
 from robbdd_tools.names.project import Snapshot
 
@@ -60,6 +61,7 @@ def create_server() -> RobbddServer:
     register_projects(server)
     register_tests(server)
     register_test_results(server)
+    register_versions(server)
     return server
 
 
