@@ -296,11 +296,55 @@ export const window = {
     const end = editor.choices.shift();
     return Promise.resolve(end === undefined ? undefined : list.find(({ label }) => label.endsWith(end)));
   },
+  createQuickPick: () => new QuickPick(),
   showTextDocument: nothing,
   onDidChangeActiveTextEditor: quiet(),
   onDidChangeTextEditorSelection: quiet(),
   onDidChangeVisibleTextEditors: quiet(),
 };
+
+/** A list in which a test chooses the next of `choices` a moment after it is shown, when late entries have come. */
+class QuickPick {
+  title = "";
+  placeholder = "";
+  busy = false;
+  items: readonly { readonly label: string }[] = [];
+  activeItems: readonly { readonly label: string }[] = [];
+  selectedItems: readonly { readonly label: string }[] = [];
+  private accepted: () => void = () => undefined;
+  private hidden: () => void = () => undefined;
+
+  onDidAccept(listener: () => void): void {
+    this.accepted = listener;
+  }
+
+  onDidHide(listener: () => void): void {
+    this.hidden = listener;
+  }
+
+  show(): void {
+    this.activeItems = this.items.slice(0, 1);
+    editor.titles.push(this.title);
+    setImmediate(() => {
+      editor.lists.push(this.items);
+      const end = editor.choices.shift();
+      this.selectedItems = this.items.filter(({ label }) => end !== undefined && label.endsWith(end)).slice(0, 1);
+      if (this.selectedItems.length > 0) {
+        this.accepted();
+      } else {
+        this.hide();
+      }
+    });
+  }
+
+  hide(): void {
+    this.hidden();
+  }
+
+  dispose(): void {
+    this.items = [];
+  }
+}
 
 /** A task that a test reads: the program and its arguments, and where it runs. */
 export class ProcessExecution {

@@ -5,8 +5,6 @@ import { type Amount, type OptionName, type RunOptions, argumentsOf, extentIn, n
 
 const KEY = "robbdd.runOptions";
 const TITLE = "Run with Options";
-/** Milliseconds that the list waits for the extent of a run. */
-const PATIENCE = 1000;
 
 interface Entry extends vscode.QuickPickItem {
   readonly action: OptionName | "run" | "reset";
@@ -28,11 +26,8 @@ export class RunOptionsChooser {
     const [part, ...others] = parts;
     let options = optionsIn(this.memory.get(key));
     for (;;) {
-      const extent = others.length > 0 ? undefined : await this.extent(model, { ...part, ...argumentsOf(options) });
-      const chosen = await vscode.window.showQuickPick(entries(options, extent), {
-        title: TITLE,
-        placeHolder: "Enter runs; choose an option to change it",
-      });
+      const target = { ...part, ...argumentsOf(options), uri: model.toString() };
+      const chosen = await ask(options, others.length > 0 ? undefined : this.estimate(target));
       if (chosen === undefined || chosen.action === "run") {
         return chosen && options;
       }
@@ -40,17 +35,39 @@ export class RunOptionsChooser {
       await this.memory.update(key, options);
     }
   }
+}
 
-  /** How many executions a run has, and how long they take; or why there would be none. Undefined if that is not known soon. */
-  private async extent(model: vscode.Uri, part: Readonly<Record<string, unknown>>): Promise<string | undefined> {
-    let timer: NodeJS.Timeout | undefined;
-    const late = new Promise<undefined>((resolve) => {
-      timer = setTimeout(resolve, PATIENCE, undefined);
+/**
+ * Ask which option to change, or whether to run; undefined if the user cancels. How many executions a run has and how long
+ * they take, or why there would be none, is shown when the server's answer is there: a large model needs some time.
+ */
+function ask(options: RunOptions, estimate: Promise<unknown> | undefined): Promise<Entry | undefined> {
+  const list = vscode.window.createQuickPick<Entry>();
+  list.title = TITLE;
+  list.placeholder = "Enter runs; choose an option to change it";
+  list.items = entries(options, undefined);
+  list.busy = estimate !== undefined;
+  return new Promise((resolve) => {
+    let isOpen = true;
+    list.onDidAccept(() => {
+      resolve(list.selectedItems[0]);
+      list.hide();
     });
-    const answer = await Promise.race([this.estimate({ ...part, uri: model.toString() }), late]);
-    clearTimeout(timer);
-    return extentIn(answer);
-  }
+    list.onDidHide(() => {
+      isOpen = false;
+      resolve(undefined);
+      list.dispose();
+    });
+    list.show();
+    void estimate?.then((answer) => {
+      if (isOpen) {
+        const active = list.activeItems[0]?.action;
+        list.items = entries(options, extentIn(answer));
+        list.activeItems = list.items.filter(({ action }) => action === active);
+        list.busy = false;
+      }
+    });
+  });
 }
 
 function folderOf(model: vscode.Uri): string {
