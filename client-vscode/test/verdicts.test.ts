@@ -79,10 +79,22 @@ for (const [place, lines, expected] of [
   });
 }
 
-test("a verdict of an execution stays at its wide line", () => {
-  const hints = ["holds", "violated"].map((verdict) => hint(1, WIDE.length, "4", { verdict, stale: false }));
+test("every verdict of an execution is drawn before a clause that ends out of sight", () => {
+  const data = [{ verdict: "holds" }, { verdict: "violated" }, { verdict: "unknown", consequence: true }];
+  const hints = data.map((one) => hint(1, WIDE.length, "4", { stale: false, ...one }));
   const found = marksOfHints(text(["", WIDE, ""]), hints);
-  assert.deepEqual(found.map(({ line, side }) => [line, side]), [[1, "after"], [1, "before"]]);
+  assert.deepEqual(found.map(({ words, line, character, side }) => [words, line, character, side]), Array(3).fill(["4", 1, 4, "before"]));
+});
+
+test("a clause that ends in sight has its verdict after it, even if a comment follows", () => {
+  const line = `${WIDE.slice(5)} // ${"a comment ".repeat(5)}`;
+  const [found] = marksOfHints(text([line]), [hint(0, 95, "✔ 4/4", { verdict: "holds", stale: false })]);
+  assert.deepEqual([found?.character, found?.side], [95, "after"]);
+});
+
+test("the pass rate of a wide line is drawn before it", () => {
+  const found = marksOfLenses(text([WIDE, WIDE]), [lens("✔ 4/4 passed", { verdict: "holds", ...FRESH })]);
+  assert.deepEqual(found.map(({ line, character, side }) => [line, character, side]), [[0, 4, "before"]]);
 });
 
 test("a pass rate is drawn at the end of the line below its lens", () => {

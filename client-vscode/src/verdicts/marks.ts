@@ -33,7 +33,8 @@ export function appearanceOf(shown: object): Appearance | undefined {
 /**
  * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause: after it, the editor draws
  * the failure of the test over everything else. A verdict that was re-judged is drawn after its clause, because
- * someone is typing there; if it were out of sight there, it is drawn at a line next to it.
+ * someone is typing there; if it were out of sight there, it is drawn at a line next to it. Any other verdict that would be
+ * out of sight after its clause is drawn before it.
  */
 export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {
@@ -48,6 +49,9 @@ export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[])
     const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
     if (appearance.rejudged && text.length > WIDE_LINE) {
       return [nextToWideLine(document, mark) ?? { ...mark, character: first, side: "before" }];
+    }
+    if (character > WIDE_LINE) {
+      return [{ ...mark, words: appearance.verdict === "holds" ? words : besideTest(mark, text), character: first, side: "before" }];
     }
     // The editor draws nothing at the row of a table, nor at a consequence, whose test has no message.
     return appearance.verdict === "holds" || appearance.rejudged || appearance.consequence || text[first] === "|"
@@ -72,7 +76,7 @@ function besideTest({ words, reason }: Pick<Mark, "words" | "reason">, text: str
   return reason === "" || text.length <= LONG_LINE ? words : `${words} ${reason}`;
 }
 
-/** The pass rates, at the ends of the lines below their lenses. */
+/** The pass rates, at the ends of the lines below their lenses, or at the beginnings of wide lines. */
 export function marksOfLenses(document: Text, lenses: readonly vscode.CodeLens[]): Mark[] {
   return lenses.flatMap((lens): Mark[] => {
     const appearance = appearanceOf(lens);
@@ -80,7 +84,8 @@ export function marksOfLenses(document: Text, lenses: readonly vscode.CodeLens[]
       return [];
     }
     const { line } = lens.range.start;
-    const character = document.lineAt(line).text.length;
-    return [{ ...appearance, words: lens.command?.title ?? "", line, character, side: "after", tooltip: "" }];
+    const { text, firstNonWhitespaceCharacterIndex: first } = document.lineAt(line);
+    const place = text.length > WIDE_LINE ? ({ character: first, side: "before" } as const) : ({ character: text.length, side: "after" } as const);
+    return [{ ...appearance, words: lens.command?.title ?? "", line, ...place, tooltip: "" }];
   });
 }
