@@ -76,7 +76,9 @@ async def test_the_tree_follows_an_edit_and_says_why_it_has_no_scenarios(editor:
     editor.change("task: <pick-place-task>", "task: <pick-place-tas>")
     answer = await tests(editor, uri=editor.uri, variant=story["tests"][0]["id"])
     assert answer["tests"] == []
-    assert "the model has errors, the first: " in answer["problem"]
+    assert answer["problem"].startswith("the model has errors, the first: ")
+    line = editor.text[: editor.text.index("task: <pick-place-tas>")].count("\n") + 1
+    assert answer["problem"].endswith(f" (pickplace.bdd, line {line})")
     (story,) = (await tests(editor, uri=editor.uri))["tests"]
     assert [variant["name"] for variant in story["tests"]] == ["parts-away"]
 

@@ -177,7 +177,7 @@ OTHER = """        Scenario elsewhere {
 @pytest.mark.physics
 def test_results_state_the_instance_and_later_commands_keep_it(tidy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(tidy), "--first", "1", "--no-store"]) == 1
-    assert "or run with --scenex FILE, a .scenex that gives it a model" in capsys.readouterr().out
+    assert "or give it a model in a .scenex that --scenex or an execution of a .bddx names" in capsys.readouterr().out
     edit("tidy.bdd", "held by <robot>, after <evt-pick-end>", "held by <robot>, after <evt-place-end>")
     run = ["run", str(tidy), "--scenex", "cell.scenex", "--first", "1"]
     assert main([*run, "--json", "run.json", "--junit", "run.xml"]) == 1

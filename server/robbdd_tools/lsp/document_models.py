@@ -30,8 +30,10 @@ def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
 def reason(error: Exception) -> str:
     """Return an error as one sentence for a message.
 
-    Findings of the model are left out, because its text shows them.
+    Of the findings of a model, it has the first with its place, since the file may not be open; its text shows the others.
     """
     if isinstance(error, ModelErrors):
-        return f"the model has errors, the first: {error.findings[0].message}"
+        first = error.findings[0]
+        file = first.place.uri if first.place.path is None else first.place.path.name
+        return f"the model has errors, the first: {first.message} ({file}, line {first.place.line})"
     return str(error)

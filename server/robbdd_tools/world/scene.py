@@ -219,7 +219,7 @@ def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
     known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
     return (
         f"there is no model for {kind} '{name}': its name, or its set's, must contain one of {known}; "
-        "or run with --scenex FILE, a .scenex that gives it a model"
+        "or give it a model in a .scenex that --scenex or an execution of a .bddx names"
     )
 
 
