@@ -32,7 +32,25 @@ EXECUTION = [
     "+ t:watch a obs:ObservationPolicy",
     "+ t:watch bdd:of-clause t:at",
 ]
+STUDY = [
+    "+ t:study a rbw:Study",
+    "+ t:study rbw:of-variant o:table",
+]
 DAMAGE: dict[str, list[str]] = {
+    "study-scenarios": [*STUDY, "+ t:study rbw:of-variant t:fetch"],
+    "study-factors": [*STUDY, "+ t:study rbw:factor-list (t:fetch)"],
+    "study-repetitions": [*STUDY, "+ t:study rbw:repetitions 0"],
+    "study-seed": [*STUDY, "+ t:study rbw:seed -1"],
+    "study-design": [*STUDY, "+ t:study rbw:design t:points", "+ t:points rbw:design-size 0"],
+    "study-rule": [*STUDY, "+ t:study rbw:stopping-rule t:one", "+ t:study rbw:stopping-rule t:two"],
+    "factor-levels": ["+ t:scenes a rbw:SceneFactor", "+ t:scenes rbw:level-list ()"],
+    "factor-implementation": ["+ t:code a rbw:BehaviourFactor", "+ t:code rbw:replaces t:fetch"],
+    "factor-variable": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:of-variable t:fetch"],
+    "factor-bounds": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:from-value 2", "+ t:range rbw:to-value 1"],
+    "factor-upper-bound": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:from-value 1"],
+    "rule-width": ["+ t:rule a rbw:WidthRule", "+ t:rule rbw:width 1"],
+    "rule-rate": ["+ t:rule a rbw:RateRule", "+ t:rule rbw:required-rate 1", "+ t:rule rbw:refuted-rate 2"],
+    "rule-required-rate": ["+ t:rule a rbw:RateRule", "+ t:rule rbw:required-rate 1"],
     "after-one-event": ["- t:taken time:after-event"],
     "after-only": ["+ t:taken time:before-event t:end"],
     "angle-value": ["- t:level rbw:limit", "+ t:level rbw:limit t:var-robot"],

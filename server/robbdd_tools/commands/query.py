@@ -12,12 +12,15 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.graph_of_study import graph_of_study
 from robbdd_tools.commands.graph_results import graph_with_results
 from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_document, print_line, print_note
+from robbdd_tools.syntax.study_content import STUDY
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.ask.query import Rows, Term
+    from robbdd_tools.graph.write.built import BuiltGraph
 
 ROW_FORMS = ("table", "csv", "json")
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
@@ -37,10 +40,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
     if source is None:
         return FAILED
     place, asked = source
-    model = valid_model(path)
-    if model is None:
-        return FAILED
-    built = graph_with_results(model, path, results)
+    built = _graph(path, results)
     if built is None:
         return FAILED
     try:
@@ -55,6 +55,13 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
         {"table": _table, "csv": _csv, "json": _json}[form](rows)
         return OK
     return _save(rows, form)
+
+
+def _graph(path: Path, results: str | None) -> BuiltGraph | None:
+    if path.suffix == f".{STUDY}":
+        return graph_of_study(path, results)
+    model = valid_model(path)
+    return None if model is None else graph_with_results(model, path, results)
 
 
 def _save(rows: Rows, form: str) -> int:

@@ -11,7 +11,7 @@ from robbdd_tools.graph.shapes.catalog_words import add_word_shapes
 if TYPE_CHECKING:
     from rdflib import Graph
 
-SHAPE_FILES = ("bdd", "time", "behaviour", "scene", "story", "variation", "execution")
+SHAPE_FILES = ("bdd", "time", "behaviour", "scene", "story", "variation", "execution", "study")
 
 
 @cache

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.graph.rdf.prefixes import user_prefixes
 from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.write.plain_statements import Statements
 
 if TYPE_CHECKING:
     from rdflib import Graph, URIRef
-    from rdflib.term import Node
 
 OUTCOMES = {"holds": "earl:passed", "violated": "earl:failed", "unknown": "earl:cantTell"}
 """Verdict → EARL's outcome value."""
@@ -69,32 +69,8 @@ def add_traces(graph: Graph, document: Json, digests: Mapping[int, str]) -> None
 
 
 @dataclass(frozen=True, slots=True)
-class _Writer:
-    graph: Graph
+class _Writer(Statements):
     prefixes: Mapping[str, str]
-
-    def node(self, iri: str, *types: str) -> URIRef:
-        from rdflib import URIRef
-        from rdflib.namespace import RDF
-
-        node = URIRef(iri)
-        for type_ in types:
-            self.graph.add((node, RDF.type, URIRef(expand(type_))))
-        return node
-
-    def link(self, node: URIRef, term: str, target: Node | str) -> None:
-        from rdflib import URIRef
-
-        value = URIRef(target) if type(target) is str else cast("Node", target)
-        self.graph.add((node, URIRef(expand(term)), value))
-
-    def say(self, node: URIRef, term: str, value: str | float | bool) -> None:
-        """Add a literal. A float becomes an xsd:double."""
-        from rdflib import Literal, URIRef
-
-        double = URIRef(expand("xsd:double"))
-        literal = Literal(repr(value), datatype=double) if isinstance(value, float) else Literal(value)
-        self.graph.add((node, URIRef(expand(term)), literal))
 
     def scenario(self, run: URIRef, entry: Json, number: int) -> None:
         where = f"scenario {number}"
