@@ -13,9 +13,15 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInternalError
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from campaign.study_agents import QuickAgent, write_study
 from fork_kit import ROBBDD_LSP
 from kit import make_endless
 from lsp_kit import PATIENCE, Editor, begin_session
+from robbdd_tools.campaign.study_file import load_study
+from robbdd_tools.campaign.study_place import study_folder
+from robbdd_tools.campaign.study_run import StudyRun
+from robbdd_tools.run import scheduler
+from robbdd_tools.run.run_policy import Policy
 
 Told = list[tuple[str, Any]]
 SHOWN, REFUSED, UNKNOWN = "shown", "refused", "unknown"
@@ -114,3 +120,38 @@ async def test_the_progress_of_a_cancelled_run_ends_by_saying_so(
     kind, value = told[-1]
     assert kind == "end"
     assert value["message"].startswith("cancelled: ")
+
+
+async def heard(told: Told, kind: str) -> str:
+    """Wait for a message of this kind about progress, and return its text."""
+    async with asyncio.timeout(PATIENCE):
+        while kind not in [one for one, _ in told]:
+            await asyncio.sleep(0.01)
+    return next(value["message"] for one, value in told if one == kind)
+
+
+@pytest.mark.parametrize("client", [SHOWN], indirect=True)
+@pytest.mark.parametrize("project", ["", "inside"])
+async def test_a_study_that_another_process_executes_shows_its_progress(
+    client: LanguageClient, tmp_path: Path, told: Told, monkeypatch: pytest.MonkeyPatch, project: str
+) -> None:
+    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
+    path = write_study(tmp_path / project)
+    if project:
+        # The results of a project inside the workspace are found by its open files.
+        Editor(client, path.parent, path.name).open()
+    with StudyRun(load_study(path), study_folder(path), Policy.of(jobs=1), resumed=False) as run:
+        progress = run.progress()
+        for _ in range(10):
+            next(progress)
+        words = await heard(told, "report")
+        begun = next(value for one, value in told if one == "begin")
+        assert begun["title"] == "Study fetching"
+        done = int(words.split()[0])
+        assert 10 <= done < 40
+        assert words.startswith(f"{done} of 40 executions; ")
+        assert " hold (" in words
+        for _ in progress:
+            pass
+    assert await heard(told, "end") == "40 of 40 executions; 35 hold (88%), 5 do not; worst clause: on-bench"
+    assert [kind for kind, _ in told].count("begin") == 1

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.workbench.time_estimate import TimeEstimate
 
 if TYPE_CHECKING:
     from robbdd_tools.run.results import ScenarioResult
@@ -88,6 +89,19 @@ class StudyProgress:
     def left(self) -> float | None:
         """The estimated wall time of the open executions in s; ``None`` if unknown."""
         return (self.total - self.finished) / self.rate if self.rate else None
+
+    @property
+    def expected(self) -> TimeEstimate:
+        """The number of open executions, with their time measured on the finished ones."""
+        return TimeEstimate(self.total - self.finished, self.left, self.made)
+
+    @property
+    def words(self) -> str:
+        """The number of finished executions, the rate, and the remaining time, in words."""
+        counted = f"{self.finished:,} of {self.total:,} executions"
+        if self.left is None:
+            return counted
+        return f"{counted}, {self.rate:.1f} per second, about {self.expected.duration} left"
 
 
 class WorkerState(NamedTuple):

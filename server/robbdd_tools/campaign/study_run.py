@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from robbdd_tools.run.run_policy import Policy
     from robbdd_tools.run.store import StoredRun
 
+LOCKING = 1.0
+"""Seconds to wait for the lock of a study."""
 AGAIN = "start it again with --restart, which removes its results"
 
 
@@ -62,7 +64,8 @@ class StudyRun:
         self.batches = batches(study)
         self.total = sum(batch.size for batch in self.batches)
         folder.mkdir(parents=True, exist_ok=True)
-        lock = acquire(folder / LOCK)
+        # Whoever asks whether the study is executed holds the lock for a moment.
+        lock = acquire(folder / LOCK, LOCKING)
         if lock is None:
             raise StudyProblem("another process executes this study: `robbdd study status` shows its progress")
         self._lock = lock

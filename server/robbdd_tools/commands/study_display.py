@@ -17,7 +17,7 @@ from rich.text import Text
 
 from robbdd_tools.campaign.study_progress import StudyProgress
 from robbdd_tools.commands.output import print_note
-from robbdd_tools.commands.study_standing import measured_words, progress_words, standing
+from robbdd_tools.commands.study_standing import measured_words, standing
 from robbdd_tools.commands.terminal import plain, terminal
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class StudyDisplay:
             print_note(f"robbdd: {measured_words(progress)}")
         if self._live is None and monotonic() - self._printed >= PAUSE:
             self._printed = monotonic()
-            print_note("; ".join((progress_words(progress), *standing(progress.tally))))
+            print_note("; ".join((progress.words, *standing(progress.tally))))
 
     def warn(self, text: str) -> None:
         """Print a warning of an agent. Only the first ``MOST_WARNINGS`` are printed."""
@@ -104,7 +104,7 @@ class StudyDisplay:
         """Return the drawing for a terminal: the progress, the verdicts so far, and the work of each worker."""
         progress = self._latest or StudyProgress(self._run.total, self._run.tally)
         bar = Table.grid(padding=(0, 1))
-        bar.add_row(ProgressBar(progress.total, progress.finished, width=BAR), Text(progress_words(progress)))
+        bar.add_row(ProgressBar(progress.total, progress.finished, width=BAR), Text(progress.words))
         lines: list[RenderableType] = [bar, *map(plain, standing(progress.tally))]
         workers = self._run.workers()
         lines += map(_worker_line, workers[:MOST_WORKERS])

@@ -15,6 +15,7 @@ from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.definitions import register_definitions
 from robbdd_tools.lsp.editing import edit_of, refactorings, register_editing
+from robbdd_tools.lsp.followed_studies import FollowedStudies
 from robbdd_tools.lsp.graph_picture import register_graph
 from robbdd_tools.lsp.lenses import register_lenses, source_actions
 from robbdd_tools.lsp.navigation import register_navigation
@@ -92,6 +93,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.spawn(watch_files(ls))
         ls.spawn(follow_settings(ls))
         ls.spawn(report_words(ls))
+        ls.spawn(FollowedStudies(ls).follow())
         ls.survey.schedule()
         await ls.stored_verdicts.load()
 
