@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit import EXAMPLES
+from kit import DOCS, EXAMPLES
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.base.external_systems import ENDPOINT_HOSTS, endpoint_host
 from robbdd_tools.base.isolation import NO_USER_CODE
@@ -225,3 +225,11 @@ def test_the_example_needs_nothing_of_ours() -> None:
         line.split()[1].partition(".")[0] for line in text.splitlines() if line.strip().startswith(("import", "from"))
     }
     assert imported <= {"os", "sys", "math", "msgpack", "websockets"}
+
+
+def test_the_bytes_on_the_page_are_those_of_the_answer() -> None:
+    page = (DOCS / "external-systems.md").read_text(encoding="utf-8")
+    (written,) = re.findall(r"^```\n((?:[0-9a-f]{2} ?)+)\n```$", page, re.MULTILINE)
+    packed = import_module("msgpack").packb({"type": "ready", "version": 1})
+    assert bytes.fromhex(written) == packed
+    assert f"the {len(packed)} bytes" in page
