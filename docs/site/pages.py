@@ -43,6 +43,7 @@ SECTIONS = {
             "assistants/language",
             "troubleshooting",
             "upgrading",
+            "changelog",
         ),
     ),
     "Examples": (),

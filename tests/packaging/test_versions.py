@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import tomllib
+from pathlib import Path
+
+import pytest
 
 from kit import ROOT
 from robbdd_tools import __version__
@@ -22,7 +25,8 @@ def test_the_extension_and_its_lock_file_have_the_version_of_the_server() -> Non
     assert manifest["version"] == locked["version"] == locked["packages"][""]["version"] == __version__
 
 
-def test_the_changelog_begins_with_that_version() -> None:
-    changelog = (CLIENT / "CHANGELOG.md").read_text(encoding="utf-8")
+@pytest.mark.parametrize("path", [CLIENT / "CHANGELOG.md", ROOT / "docs" / "changelog.md"], ids=["client", "package"])
+def test_each_changelog_begins_with_that_version(path: Path) -> None:
+    changelog = path.read_text(encoding="utf-8")
     newest = next(line for line in changelog.splitlines() if line.startswith("## "))
     assert newest == f"## {__version__}"
