@@ -88,7 +88,7 @@ class InstanceReader:
             self._places(node),
             next(iter(records.iris(records.all(node, "rbw:scene"))), ""),
             tuple(pair for part in self._list(node, "rbw:frictions") for pair in self._friction(part)),
-            tuple(box for part in self._list(node, "rbw:realisations") for box in self._boxes(part)),
+            boxes=tuple(box for part in self._list(node, "rbw:realisations") for box in self._boxes(part)),
         )
 
     def _list(self, node: str, term: str) -> tuple[Iri, ...]:
