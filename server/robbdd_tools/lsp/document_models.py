@@ -30,7 +30,7 @@ def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
 def reason(error: Exception) -> str:
     """Return an error as one sentence for a message.
 
-    Of the findings of a model, it has the first with its place, since the file may not be open; its text shows the others.
+    A finding of a model is given with its place, since its file may not be open; the text shows the others.
     """
     if isinstance(error, ModelErrors):
         first = error.findings[0]
