@@ -39,7 +39,7 @@ class CoverableClause:
 
 @dataclass(frozen=True, slots=True)
 class CoverageUniverse:
-    """What a study could exercise.
+    """All that a study could exercise.
 
     ``levels`` are pairs of a name and a level as JSON, and ``pairs`` the numbers (from 0) of two levels of different
     factors or variables that occur together in a scenario.

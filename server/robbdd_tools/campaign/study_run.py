@@ -64,7 +64,7 @@ class StudyRun:
         self.batches = batches(study)
         self.total = sum(batch.size for batch in self.batches)
         folder.mkdir(parents=True, exist_ok=True)
-        # Whoever asks whether the study is executed holds the lock for a moment.
+        # A process that asks whether the study is executed holds the lock for a moment.
         lock = acquire(folder / LOCK, LOCKING)
         if lock is None:
             raise StudyProblem("another process executes this study: `robbdd study status` shows its progress")

@@ -207,10 +207,8 @@ class Predicate:
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
     - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
     - ``synonyms``: wrong words that users write for it; the error message then names the predicate.
-    - ``in_texts``: other forms with the same slots that only the text of a ``pred("…")`` may have, because as a phrase
-      they belong to a predicate about other kinds of elements.
-    - ``pointwise``: true if the margin at a sample depends on no other sample but the one before it, so that long
-      windows may be evaluated in parts.
+    - ``in_texts``: forms for the text of a ``pred("…")`` only; as phrases they are about other kinds of elements.
+    - ``pointwise``: true if the margin at a sample depends only on it and the one before; windows may then be divided.
     """
 
     name: str

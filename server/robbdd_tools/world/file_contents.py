@@ -68,7 +68,7 @@ def reduce_to_arm(spec: Any, source: ModelSource) -> list[str]:
 
 
 def _leave_out_scene(spec: Any, source: ModelSource) -> list[str]:
-    """Remove what stands around the arm if the file is a whole scene: it has loose objects or mocap bodies.
+    """Remove the surroundings of the arm if the file is a whole scene: it has loose objects or mocap bodies.
 
     Return what was removed, as lines for a report.
     """
