@@ -118,3 +118,38 @@ def test_a_set_that_is_written_out_gets_a_name(old: str, new: str) -> None:
     assert above == declared
     assert faults(above) == () == faults(template)
     assert "in <x-values> )" in template
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        f"( not {GIVEN} )",
+        f"( {GIVEN} or b: holds(<part> is at rest, before <end>) )",
+        f"( var x exists in <places> ) such that {{ {GIVEN} }}",
+    ],
+)
+def test_a_name_before_parentheses_is_removed(group: str) -> None:
+    text = TEMPLATE.replace(GIVEN, f"( all-of-it : {group} and c: holds(<part> is glued, before <end>) )")
+    named, unknown = faults(text)
+    assert text[named.span.start : named.span.end] == "all-of-it :"
+    assert named.message == "parentheses have no name, but each clause inside has one: remove 'all-of-it :'"
+    assert unknown.message.startswith("there is no phrase 'is glued'")
+    assert len(faults(fixed(text, named))) == 1
+
+
+def test_a_second_hides_no_other_mistake() -> None:
+    text = TEMPLATE.replace("0.5 seconds after", "1 second after").replace(
+        "is located at <goal>, before", "is glued, before"
+    )
+    assert [one.message.partition(":")[0] for one in faults(text)] == [
+        "there is no phrase 'is glued'",
+        "write the unit as 'seconds'",
+    ]
+
+
+def test_the_words_of_a_feature_are_explained() -> None:
+    text = TEMPLATE.replace("0.5 seconds after", "for 0.5 seconds after")
+    (fault,) = faults(text)
+    assert text[fault.span.start : fault.span.end] == "for"
+    assert fault.message == "leave out 'for': 'N seconds after' means throughout these seconds"
+    assert fixed(text, fault) == TEMPLATE

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.resolve import Resolution, Unresolved
     from robbdd_tools.names.scope import Scope
     from robbdd_tools.syntax.declaration import Reference
+    from robbdd_tools.syntax.tree import Ref
+
+_SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET, SymbolKind.CONSTANT_SET)
 
 
 def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Diagnostic]:
@@ -93,10 +96,17 @@ def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
         ref.span.shifted(offset),
         Severity.ERROR,
         "wrong-kind",
-        f"'{ref.path}' is {_a(found.kind)}, but {_wanted(ref.role)} belongs here",
+        f"'{ref.path}' is {_a(found.kind)}, but {_wanted(ref.role)} belongs here{_as_variable(ref, found.kind)}",
         (Related(found.uri, found.span, f"'{ref.path}' is declared here"),),
         _renamings(scope, ref.span.shifted(offset), nearest(scope, problem.reference, ROLE_KINDS[ref.role])[0]),
     )
+
+
+def _as_variable(ref: Ref, kind: SymbolKind) -> str:
+    """Return what to write instead of a set in a phrase, whose sets are values of variables."""
+    if ref.role != "Term" or kind not in _SETS:
+        return ""
+    return f": declare a 'set var', whose values are '{{ {{ … }} }}' or 'select N combinations from <{ref.path}>'"
 
 
 def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:

@@ -10,6 +10,7 @@ from robbdd_tools.base.quantity_units import units_of
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.joined import joining_word
+from robbdd_tools.syntax.named_groups import named_group
 from robbdd_tools.syntax.near_misses import near_miss, other_file
 from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.quantified_sets import set_in_quantifier
@@ -92,7 +93,15 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     joining = joining_word(text, rejected.offset) if ":" in rejected.expected.literals else None
     if joining is not None:
         return SyntaxFault(joining, _UNJOINED.format(text[joining.start : joining.end]))
-    explaining = (phrase_fault, behaviour_fault, _without_unit, unit_of_setting, set_in_quantifier, near_miss)
+    explaining = (
+        phrase_fault,
+        behaviour_fault,
+        _without_unit,
+        unit_of_setting,
+        set_in_quantifier,
+        named_group,
+        near_miss,
+    )
     known = next((fault for explain in explaining if (fault := explain(text, rejected)) is not None), None)
     if known is not None:
         return known

@@ -61,6 +61,13 @@ _NEAR_MISSES = (
     NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
     NearMiss(r"\b(?:before|after)\s+\Z", r"(?:first|last)\b(?=\s*<)", "write 'the' before it", "the", "the {}".format),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
+    NearMiss(
+        r",\s*\Z",
+        r"for\s+(?=[\d.<])",
+        "leave out 'for': 'N seconds after' means throughout these seconds",
+        "within",
+        lambda _: "",
+    ),
     NearMiss(r"", r"isCorrect\s*(?=\(\s*<)", _CORRECT, "<"),
     NearMiss(r"\bisCorrect\s*\Z", r"\((?=\s*<)", _CORRECT, ":"),
     NearMiss(r"", rf"(?!not\b|pred\b|holds\b){_NAME}\s*(?=\(\s*<)", _OWN_PREDICATE, "<"),

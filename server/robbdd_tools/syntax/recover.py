@@ -17,6 +17,7 @@ from itertools import islice
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.joined import joined_clauses
+from robbdd_tools.syntax.named_groups import name_of_group
 from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 from robbdd_tools.syntax.quantified_sets import written_set
 from robbdd_tools.syntax.unknown_phrases import unknown_phrase
@@ -137,6 +138,9 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     yield from _parentheses(language, text, stopped)
     yield from _text_predicate(text, stopped)
     yield from _written_set(text, offset)
+    name = name_of_group(text, stopped)
+    if name is not None:
+        yield replace(_blanked(text, name), is_certain=True)
     yield from _single_values(text, offset)
     yield from _missing_column(text, stopped)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
@@ -236,10 +240,15 @@ def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
     start, end = found.start, found.end
     while end - start < len(keyword) and text[end : end + 1].isspace() and not _continues(text, end + 1):
         end += 1
-    while end - start < len(keyword) and start > 0 and text[start - 1].isspace() and not _continues(text, start - 2):
+    while end - start < len(keyword) and start > 0 and text[start - 1].isspace() and _may_end(text, start - 2):
         start -= 1
     if end - start >= len(keyword):
         yield Repair(text[:start] + keyword.ljust(end - start) + text[end:], found, keyword)
+
+
+def _may_end(text: str, place: int) -> bool:
+    """Return whether a word may follow ``place`` without white space. A number may be followed by its unit."""
+    return not _continues(text, place) or text[place].isdigit()
 
 
 def _continues(text: str, place: int) -> bool:
