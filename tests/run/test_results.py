@@ -156,3 +156,14 @@ def test_of_several_fluents_the_one_that_decides_is_named() -> None:
     assert verdict_words(judged, replace(several, statement=left)) == "✔ +31 mm"
     # The sentence was edited since.
     assert verdict_words(replace(judged, operand=2), several) == "✔ +31 mm"
+
+
+def test_a_clause_without_a_name_is_called_by_its_sentence_in_the_first_scenario() -> None:
+    clauses = (
+        ClauseSpec(5, "urn:c", "c", "then", '"e:a" is at rest after event "t:e"'),
+        ClauseSpec(6, "urn:not-fetch.then.1", "not-fetch.then.1", "then", 'not ( "e:a" is at rest after event "t:e" )'),
+    )
+    first = ScenarioSpec("s.feature", 3, "e:v -- 1", "urn:s", "urn:v", 1, {}, 7, SceneSpec(), {}, clauses)
+    other = replace(first, variation=2, clauses=(replace(clauses[1], sentence='not ( "e:b" is at rest )'),))
+    found = RunResults(Manifest("m.bdd", 1, (first, other))).titles()
+    assert list(found.items()) == [("urn:c", "c"), ("urn:not-fetch.then.1", "'not ( a is at rest after e )'")]

@@ -235,11 +235,9 @@ class Display:
             self._console.print(Text(f"{done} of {self._total} scenarios: {self._shown[Outcome.HOLDS]} hold"))
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
-        """Yield the name of each clause whose verdict proves little, and the reason, in the order of the model."""
-        clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
-        names = {clause.iri: clause.name for clause in clauses}
+        """Yield the title of each clause whose verdict proves little, and the reason, in the order of the model."""
         reasons = self._results.vacuous()
-        return ((name, reasons[iri]) for iri, name in names.items() if iri in reasons)
+        return ((name, reasons[iri]) for iri, name in self._results.titles().items() if iri in reasons)
 
     def _scenario(self, index: int) -> None:
         scenario = self._results.scenarios[index]

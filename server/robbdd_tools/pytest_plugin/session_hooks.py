@@ -198,7 +198,7 @@ def _read_pointer(shared: Path) -> StoredRun:
 
 
 def _summary(place: StoredRun, results: RunResults) -> Iterator[str]:
-    names = {clause.iri: clause.name for scenario in results.scenarios for clause in scenario.spec.clauses}
+    names = results.titles()
     yield from results.choices()
     yield from (f"{names[iri]} proves little: {reason}" for iri, reason in results.vacuous().items())
     total = len(results.scenarios)

@@ -119,6 +119,12 @@ class RunResults:
         """Map the IRI of each clause that could not have failed in this run to the reason why it could not."""
         return self._vacuity.reasons()
 
+    def titles(self) -> Mapping[str, str]:
+        """Map the IRI of each clause to its title. A title that is a sentence has the values of the first scenario."""
+        every = (clause for scenario in reversed(self.scenarios) for clause in reversed(scenario.spec.clauses))
+        found = {clause.iri: clause_title(clause) for clause in every}
+        return dict(reversed(found.items()))
+
     def _clause(self, index: int, line: int) -> ClauseSpec:
         return next(clause for clause in self.scenarios[index].spec.clauses if clause.line == line)
 
