@@ -153,3 +153,20 @@ def test_the_words_of_a_feature_are_explained() -> None:
     assert text[fault.span.start : fault.span.end] == "for"
     assert fault.message == "leave out 'for': 'N seconds after' means throughout these seconds"
     assert fixed(text, fault) == TEMPLATE
+
+
+@pytest.mark.parametrize(
+    ("phrase", "found", "message"),
+    [
+        ("at least 2 <parts> are located at <goal>", "at least", "a phrase does not count: write '( var x exists in"),
+        ("all <parts> are located at <goal>", "all", "a phrase does not count: write '( var x exists in"),
+        ("the duration is less than 4 s", "the duration", "a duration is required by 'it takes less than 12 s, from"),
+        ("distance between <part> and <goal> below 1 m", "distance", "a distance is required by '<a> is nearer than"),
+        ("part is at rest", "part", "names must be in angle brackets"),
+    ],
+)
+def test_the_first_words_of_a_requirement_lead_to_what_the_language_has(phrase: str, found: str, message: str) -> None:
+    text = TEMPLATE.replace(GIVEN, f"on-bench: holds({phrase}, before <pick-start>)")
+    fault = faults(text)[0]
+    assert text[fault.span.start : fault.span.end] == found
+    assert fault.message.startswith(message)

@@ -42,7 +42,16 @@ def _as_set(before: re.Match[str]) -> SyntaxFix:
 _OWN_PREDICATE = """the language has no such predicate: write 'pred("{x} is …", x=<variable>)', \
 which a policy or a step function judges"""
 _CORRECT = "the language has no such predicate: write '<workspace> is correct for <object>'"
+_COUNT = """a phrase does not count: write '( var x exists in <set> ) such that { … }' for at least one element, \
+or 'for all ( var x in <set> ) { … }' for each of them"""
+_DURATION = "a duration is required by 'it takes less than 12 s, from <start> until <end>'"
+_DISTANCE = "a distance is required by '<a> is nearer than 0.5 m to <b>', or by '<a> is farther than 0.5 m from <b>'"
 _NEAR_MISSES = (
+    NearMiss(
+        r"\bholds\s*\(\s*\Z", r"(?:at (?:least|most)|exactly|all|every|each|some|any|no|none|both)\b(?!-)", _COUNT, "<"
+    ),
+    NearMiss(r"\bholds\s*\(\s*\Z", r"(?:the )?(?:duration|time|total time)\b(?!-)", _DURATION, "<"),
+    NearMiss(r"\bholds\s*\(\s*\Z", r"(?:the )?distance\b(?!-)", _DISTANCE, "<"),
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
         r"[<\d\"'+\-.]",
