@@ -121,3 +121,17 @@ def test_a_point_of_a_range_is_replayed_with_its_values(tmp_path: Path) -> None:
     values = {f"level.{name}": str(value) for name, value in spec.values.items()}
     assert values == {name: value for name, value in known[5].items() if name in values}
     assert sum("speed" in name or "friction" in name for name in values) == 2
+
+
+def test_a_study_with_files_of_its_own_is_executed_again_in_another_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copytree(EXAMPLE.parent / "nearperson", "cell")
+    study = Path("cell") / "near.study"
+    study.write_text('import "nearperson.bddx"\nStudy near { repeat: 10 }\n', encoding="utf-8")
+    assert main(["study", "run", str(study)]) == 1
+    again = ["report", str(study), "--again", "2", "--no-pictures", "-o", "r.html"]
+    assert main(again) == 0
+    person = study.with_name("person.xml")
+    person.write_text(f"{person.read_text(encoding='utf-8')}<!-- -->\n", encoding="utf-8")
+    capsys.readouterr()
+    assert main(again) == 2
+    assert "person.xml changed since the study began" in capsys.readouterr().err

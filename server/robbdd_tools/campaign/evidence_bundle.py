@@ -12,21 +12,24 @@ Equal runs of equal models make equal bundles, byte for byte.
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
-import zipfile
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
-from pathlib import Path, PurePosixPath
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
-from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
-from robbdd_tools.base.printable import printable_json
-from robbdd_tools.base.writing import replacing_bytes
+from robbdd_tools.campaign.evidence_parts import (
+    SOURCES,
+    Bundle,
+    NoEvidence,
+    entry_of,
+    json_bytes,
+    sha256,
+    source_names,
+    write_archive,
+)
 from robbdd_tools.protocol.manifest_file import MANIFEST
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.results import finished_in
@@ -37,23 +40,8 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.model import Model
     from robbdd_tools.workbench.stored import PastRun
 
-FORMAT = 1
-CONTENTS, GRAPH = "bundle.json", "graph.ttl"
-SOURCES, RUN = "sources", "run"
-_DATE = (1980, 1, 1, 0, 0, 0)
-"""All entries have this date, the earliest one that a ZIP archive can have."""
-
-
-class NoEvidence(RobbddError):
-    """A run cannot be written as a bundle; the message gives the reason."""
-
-
-@dataclass(frozen=True, slots=True)
-class Bundle:
-    """A bundle that was written: the SHA-256 of its list of contents, and the number of its traces."""
-
-    digest: str
-    traces: int
+GRAPH = "graph.ttl"
+RUN = "run"
 
 
 def write_bundle(run: PastRun, output: Path, *, traces: bool = True) -> Bundle:
@@ -74,30 +62,20 @@ def write_bundle(run: PastRun, output: Path, *, traces: bool = True) -> Bundle:
     kept = {index: path for index in finished if (path := trace_file(run.folder, index)).is_file()} if traces else {}
     files: dict[str, bytes] = _sources(model, run)
     source = _entry(files, model)
-    files[f"{RUN}/{RECORD}"] = _json({**asdict(record), "origin": "", "models": []})
+    files[f"{RUN}/{RECORD}"] = json_bytes({**asdict(record), "origin": "", "models": []})
     files[f"{RUN}/{MANIFEST}"] = load_bytes(run.folder / MANIFEST, RESULT_SIZE)
-    files[f"{RUN}/{RESULTS}"] = _json(document)
+    files[f"{RUN}/{RESULTS}"] = json_bytes(document)
     for index, path in sorted(kept.items()):
         files[f"{RUN}/{trace_file(Path(), index).as_posix()}"] = load_bytes(path, RESULT_SIZE)
-    digests = {index: _sha(files[f"{RUN}/{trace_file(Path(), index).as_posix()}"]) for index in kept}
+    digests = {index: sha256(files[f"{RUN}/{trace_file(Path(), index).as_posix()}"]) for index in kept}
     files[GRAPH] = graph_of(model, document, digests).encode()
-    contents = _json(
-        {
-            "format": FORMAT,
-            "robbdd": __version__,
-            "simulator": record.simulator,
-            "model": source,
-            "graph_digest": record.digest,
-            "files": {name: _sha(data) for name, data in sorted(files.items())},
-        }
-    )
-    with replacing_bytes(output) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in ((CONTENTS, contents), *sorted(files.items())):
-            entry = zipfile.ZipInfo(name, _DATE)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = 0o644 << 16
-            archive.writestr(entry, data)
-    return Bundle(_sha(contents), len(kept))
+    contents = {
+        "robbdd": __version__,
+        "simulator": record.simulator,
+        "model": source,
+        "graph_digest": record.digest,
+    }
+    return Bundle(write_archive(output, contents, files), len(kept))
 
 
 def graph_of(model: Model, document: Mapping[str, Any], digests: Mapping[int, str]) -> str:
@@ -126,22 +104,12 @@ def _sources(model: Model, run: PastRun) -> dict[str, bytes]:
     for name in run.record.files:
         path = (run.folder / name).resolve()
         texts[path] = load_bytes(path, RESULT_SIZE)
-    root = Path(os.path.commonpath([path.parent for path in texts]))
-    return {f"{SOURCES}/{path.relative_to(root).as_posix()}": data for path, data in texts.items()}
+    names = source_names(texts)
+    return {names[path]: data for path, data in texts.items()}
 
 
 def _entry(files: Iterable[str], model: Model) -> str:
     """Return the bundle's name of the file that was run: the longest ending of its path that is in the bundle."""
     path = uri_to_path(model.runnable[0].uri)
     assert path is not None
-    ending = path.resolve().as_posix()
-    found = [name for name in files if ending.endswith(f"/{PurePosixPath(name).relative_to(SOURCES).as_posix()}")]
-    return max(found, key=len)
-
-
-def _json(document: Any) -> bytes:
-    return (printable_json(json.loads(json.dumps(document)), indent=1) + "\n").encode()
-
-
-def _sha(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
+    return entry_of(path, (name for name in files if name.startswith(SOURCES)))

@@ -8,7 +8,8 @@ import os
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, cast
@@ -18,7 +19,9 @@ from robbdd_tools.base.files import load_bytes, load_text
 from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.campaign.evidence_bundle import CONTENTS, FORMAT, GRAPH, RUN, SOURCES, graph_of
+from robbdd_tools.campaign.evidence_bundle import GRAPH, RUN, graph_of
+from robbdd_tools.campaign.evidence_parts import CONTENTS, FORMAT, SOURCES, Check
+from robbdd_tools.campaign.study_evidence import STUDY, study_checks, study_counts
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.results import finished_in
 from robbdd_tools.run.store import RESULTS, run_in
@@ -40,20 +43,6 @@ MOST_CONTRADICTIONS = 20
 
 class NotABundle(RobbddError):
     """The file is not a bundle of evidence, or its version is not supported."""
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One property of a bundle.
-
-    ``problems`` contradict it. ``unchecked`` is the reason why some or all of it could not be checked. ``detail`` says
-    what was checked.
-    """
-
-    name: str
-    detail: str
-    problems: tuple[str, ...] = ()
-    unchecked: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +68,10 @@ class Verification:
         return not any(check.unchecked for check in self.checks)
 
 
-def verify_bundle(path: Path, *, digest: str = "", user_code: bool = False) -> Verification:
+def verify_bundle(path: Path, *, digest: str = "", user_code: bool = False, replays: int = 0) -> Verification:
     """Check a bundle. It must have the ``digest``, if given. With ``user_code``, its users' code may be executed.
+
+    Of a study, this many executions (``replays``) are executed again.
 
     Raises ``NotABundle`` and ``OSError``.
     """
@@ -89,15 +80,33 @@ def verify_bundle(path: Path, *, digest: str = "", user_code: bool = False) -> V
             found = _contents(archive)
             files = _Files(archive, found, Path(folder))
             checks = [files.intact(digest)]
-            if not checks[0].problems:
-                checks += _derived(found, Path(folder), user_code=user_code)
-            results = files.results()
-            holding = sum(one.verdict == "holds" for one in results)
+            is_study = found.get("kind") == STUDY
+            with code_permitted(permitted=user_code):
+                if not checks[0].problems and is_study:
+                    checks += study_checks(found, Path(folder), replays)
+                elif not checks[0].problems:
+                    checks += _derived(found, Path(folder))
+            executions, holding = study_counts(Path(folder)) if is_study else files.counts()
             stated = {name: str(found.get(name, "")) for name in ("robbdd", "simulator", "model")}
-            return Verification(files.digest, **stated, executions=len(results), holding=holding, checks=tuple(checks))
+            return Verification(files.digest, **stated, executions=executions, holding=holding, checks=tuple(checks))
     # zipfile raises NotImplementedError for a compression that it does not know.
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError) as error:
         raise NotABundle(f"{path} is not a bundle of evidence, or it is damaged: {error}") from error
+
+
+@contextmanager
+def code_permitted(*, permitted: bool) -> Generator[None]:
+    """Refuse users' code, unless it is ``permitted``."""
+    before = os.environ.get(NO_USER_CODE)
+    if not permitted:
+        os.environ[NO_USER_CODE] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(NO_USER_CODE, None)
+        else:
+            os.environ[NO_USER_CODE] = before
 
 
 def _contents(archive: zipfile.ZipFile) -> Mapping[str, Any]:
@@ -162,12 +171,13 @@ class _Files:
                 replace_file(target, data)
         return Check("contents", f"{len(self._listed)} files have their SHA-256", tuple(problems))
 
-    def results(self) -> tuple[ExecutionResult, ...]:
-        """Return the results in the bundle; empty if they cannot be read."""
+    def counts(self) -> tuple[int, int]:
+        """Return the number of executions, and how many hold; 0 if the results cannot be read."""
         try:
-            return execution_results(json.loads(load_text(self._folder / RUN / RESULTS, RESULT_SIZE)))
+            results = execution_results(json.loads(load_text(self._folder / RUN / RESULTS, RESULT_SIZE)))
         except (OSError, ValueError, KeyError, TypeError):
-            return ()
+            return 0, 0
+        return len(results), sum(one.verdict == "holds" for one in results)
 
 
 def _is_inside(name: str) -> bool:
@@ -180,7 +190,7 @@ def _is_inside(name: str) -> bool:
     )
 
 
-def _derived(contents: Mapping[str, Any], folder: Path, *, user_code: bool) -> Iterator[Check]:
+def _derived(contents: Mapping[str, Any], folder: Path) -> Iterator[Check]:
     """Derive the model's graph, the graph with results and the verdicts from other parts, and compare them."""
     try:
         model = load_all([folder / str(contents.get("model", ""))])
@@ -202,7 +212,7 @@ def _derived(contents: Mapping[str, Any], folder: Path, *, user_code: bool) -> I
     document = run.place.results()
     finished = finished_in(document)
     kept = [index for index in sorted(finished) if trace_file(run.folder, index).is_file()]
-    yield _judged(run, load_all([folder / str(contents["model"])]), kept, sorted(finished), user_code=user_code)
+    yield _judged(run, load_all([folder / str(contents["model"])]), kept, sorted(finished))
     yield _graph(model, document, folder, run, kept)
 
 
@@ -220,14 +230,11 @@ def _graph(model: Model, document: Mapping[str, Any], folder: Path, run: PastRun
     return Check(name, detail, () if same else (f"{GRAPH} is not the graph of the model with these results",))
 
 
-def _judged(run: PastRun, model: Model, kept: list[int], finished: list[int], *, user_code: bool) -> Check:
+def _judged(run: PastRun, model: Model, kept: list[int], finished: list[int]) -> Check:
     """Judge the traces again by the model's clauses, and compare verdicts and margins with those in the bundle."""
     name = "verdicts"
     if not kept:
         return Check(name, "", unchecked="the bundle has no traces, so no verdict was judged again")
-    before = os.environ.get(NO_USER_CODE)
-    if not user_code:
-        os.environ[NO_USER_CODE] = "1"
     try:
         judged = judge(run, model)
     except UserCodeRefused:
@@ -236,11 +243,6 @@ def _judged(run: PastRun, model: Model, kept: list[int], finished: list[int], *,
     except RobbddError as error:
         reason = "; ".join(str(error).splitlines())
         return Check(name, "", unchecked=f"no verdict was judged again: {reason}")
-    finally:
-        if before is None:
-            os.environ.pop(NO_USER_CODE, None)
-        else:
-            os.environ[NO_USER_CODE] = before
     stated = {one.index: one for one in run.results}
     again = {one.index: one for one in judged.results}
     problems = [f"{stated[index].name}: the model has no such scenario" for index in kept if index not in again]

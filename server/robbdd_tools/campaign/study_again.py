@@ -31,10 +31,13 @@ class Again:
     indices: Mapping[int, int]
 
 
-def execute_again(path: Path, store: StudyReader, chosen: Collection[int], folder: Path, policy: Policy) -> list[Again]:
+def execute_again(
+    path: Path, store: StudyReader, chosen: Collection[int], folder: Path, policy: Policy, *, force: bool = False
+) -> list[Again]:
     """Execute some executions of the study at ``path`` again, in run folders within ``folder``.
 
-    ``store`` has the results of the study, and ``chosen`` are the indices of the executions.
+    ``store`` has the results of the study, and ``chosen`` are the indices of the executions. With ``force``, the caller
+    has compared the study and its files with those of the results.
 
     Raises ``StudyProblem`` if the study or one of its files was changed, ``NotAgain`` if a verdict or margin differs,
     ``ModelErrors``, ``UserCodeRefused`` and ``OSError``.
@@ -42,7 +45,7 @@ def execute_again(path: Path, store: StudyReader, chosen: Collection[int], folde
     study = load_study(path)
     if any(finding.is_error for finding in study.findings):
         raise ModelErrors(study.findings)
-    replay = StudyReplay(study, store, folder, force=False)
+    replay = StudyReplay(study, store, folder, force=force)
     executions = [one for one in store.executions() if one.number - 1 in chosen]
     found: list[Again] = []
     for begun, own in replay.runs(executions, policy):

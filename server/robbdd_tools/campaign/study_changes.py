@@ -34,6 +34,14 @@ def used_files(place: StoredRun) -> Mapping[str, str]:
     return dict(place.record().files) | own
 
 
+def resolved_files(files: Mapping[str, str], folder: Path) -> Mapping[str, str]:
+    """Return digests of files by absolute paths, for comparing runs of different folders.
+
+    The names of files outside of the run are relative to its ``folder``; copies inside of it have a bare name.
+    """
+    return {str((folder / name).resolve()) if "/" in name else name: digest for name, digest in files.items()}
+
+
 def changed_files(before: Mapping[str, str], now: Mapping[str, str]) -> str:
     """Return which files changed since a study began, with a request to undo it; empty if none did."""
     differing = sorted(one for one in {*before, *now} if before.get(one) != now.get(one))

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.campaign.study_changes import changed_files, changed_study, used_files
+from robbdd_tools.campaign.study_changes import changed_files, changed_study, resolved_files, used_files
 from robbdd_tools.campaign.study_clauses import clause_named, clause_words
-from robbdd_tools.campaign.study_place import RUNS, StudyProblem
+from robbdd_tools.campaign.study_place import BATCHES, RUNS, StudyProblem
 from robbdd_tools.run.results import unjudged
 from robbdd_tools.run.store import RunStore
 from robbdd_tools.run.store_maintenance import remove_runs
@@ -117,13 +117,18 @@ class StudyReplay:
         plan = replace(cell.plan, requests=tuple(map(limited, cell.plan.requests)))
         run = Run.begin(plan, self._runs.begin(), policy, repeat=self._study.repeat)
         known = self._store.fact(f"files {cell.words}")
-        reason = "" if self._force or known is None else changed_files(json.loads(known), used_files(run.place))
+        reason = "" if self._force or known is None else self._changed(json.loads(known), run)
         if reason:
             run.close()
             run.place.discard()
             remove_runs(run.place.database, (run.place.number,))
             raise StudyProblem(f"{reason}, or execute the changed files with --force")
         return run
+
+    def _changed(self, known: Mapping[str, str], run: Run) -> str:
+        """Return which files differ from those of the study. The run may be in a folder of any place."""
+        before = resolved_files(known, self._store.path.parent / BATCHES / "1")
+        return changed_files(before, resolved_files(used_files(run.place), run.folder))
 
     def differences(self, run: Run, executions: Sequence[StoredExecution]) -> Mapping[int, str]:
         """Return how executions differ from the study, in words, by their numbers. Equal executions are missing."""

@@ -1,4 +1,4 @@
-"""``robbdd evidence``: write the evidence of a run as one file, and check such a file without a network."""
+"""``robbdd evidence``: write the evidence of a run or a study as one file, and check such a file without a network."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.campaign.evidence_bundle import write_bundle
 from robbdd_tools.campaign.evidence_check import Verification, verify_bundle
+from robbdd_tools.campaign.study_evidence import pack_study
+from robbdd_tools.campaign.study_file import SUFFIX
 from robbdd_tools.commands import CANNOT_TELL, FINDINGS, OK
 from robbdd_tools.commands.output import print_line
 from robbdd_tools.commands.run import Outputs, report_problems
@@ -18,7 +20,7 @@ from robbdd_tools.workbench.stored import find_run
 
 @dataclass(frozen=True, slots=True)
 class PackOptions:
-    """The options of ``robbdd evidence pack``: the run, a path in its project, the bundle, whether to add traces."""
+    """The options of ``robbdd evidence pack``: the run or study, a path in its project, the bundle, and its traces."""
 
     run: str
     path: Path
@@ -28,9 +30,13 @@ class PackOptions:
 
 
 def pack(options: PackOptions) -> int:
-    """Write the bundle of a run and print its digest; return the exit code."""
+    """Write the bundle of a run or a study and print its digest; return the exit code."""
 
     def work() -> int:
+        if options.run.endswith(SUFFIX):
+            written = pack_study(Path(options.run), options.store, options.output)
+            print_line(f"{options.output}: {written.traces} executions, digest {written.digest}")
+            return OK
         run = find_run(options.run, options.path, store=options.store)
         print_unfinished(run.place, run.status)
         bundle = write_bundle(run, options.output, traces=options.traces)
@@ -40,15 +46,15 @@ def pack(options: PackOptions) -> int:
     return report_problems(Outputs(report=options.output), viewer=False, work=work)
 
 
-def verify(path: Path, digest: str, json: Path | None, *, user_code: bool) -> int:
-    """Check a bundle and print what was checked.
+def verify(path: Path, digest: str, json: Path | None, *, user_code: bool, replays: int = 0) -> int:
+    """Check a bundle and print what was checked. Of a study, ``replays`` executions are executed again.
 
     Returns 0 if everything was checked and is consistent, 1 if something in the bundle contradicts the rest, 2 if the
     file is not a bundle, 3 if nothing contradicts, but a part could not be checked.
     """
 
     def work() -> int:
-        found = verify_bundle(path, digest=digest, user_code=user_code)
+        found = verify_bundle(path, digest=digest, user_code=user_code, replays=replays)
         _print(found)
         if json is not None:
             document = {**asdict(found), "result": _result(found)}

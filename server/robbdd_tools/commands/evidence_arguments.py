@@ -5,14 +5,17 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from robbdd_tools.commands.arguments import positive
 from robbdd_tools.commands.run_arguments import allow_store
 
 
 def add_evidence(parser: argparse.ArgumentParser) -> None:
     """Add the commands about bundles of evidence."""
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    pack = commands.add_parser("pack", help="write the model, results, traces and graph of a stored run as one file")
-    pack.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
+    pack = commands.add_parser("pack", help="write texts, results and traces of a stored run or a study as one file")
+    pack.add_argument(
+        "run", metavar="RUN|FILE.study", help="number of a stored run, latest, a run's folder; or a study"
+    )
     pack.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the run's project")
     pack.add_argument("-o", "--output", metavar="FILE.zip", type=Path, required=True)
     text = "leave out the traces: the bundle is small, but its verdicts cannot be judged again"
@@ -26,6 +29,8 @@ def add_evidence(parser: argparse.ArgumentParser) -> None:
     verify.add_argument("--json", metavar="OUT", type=Path, help="write the result to this file")
     text = "execute users' Python code in the bundle, which evaluates clauses; without it, these are not judged again"
     verify.add_argument("--user-code", action="store_true", help=text)
+    text = "of a study, execute N executions again, spread evenly, and compare their verdicts and margins"
+    verify.add_argument("--replay", metavar="N", type=positive, default=0, help=text)
     verify.set_defaults(command=_verify)
 
 
@@ -39,4 +44,4 @@ def _pack(options: argparse.Namespace) -> int:
 def _verify(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.evidence import verify
 
-    return verify(options.path, options.digest, options.json, user_code=options.user_code)
+    return verify(options.path, options.digest, options.json, user_code=options.user_code, replays=options.replay)

@@ -19,6 +19,16 @@ COLUMNS = ("number", "scenario", "variant", "variation", "execution", "repetitio
            "scenario_verdict", "clause", "verdict", "margin", "unit", "at", "reason")  # fmt: skip
 """Columns of an exported row, after the levels."""
 
+TABLES: Mapping[str, str] = {
+    "fact": "SELECT name, content FROM fact ORDER BY name",
+    "word": "SELECT id, content FROM word ORDER BY id",
+    "combination": "SELECT id, cell, story, variant, variation, execution, name, levels FROM combination ORDER BY id",
+    "batch": "SELECT number, cell, host FROM batch ORDER BY number",
+    "execution": "SELECT id, batch, combination, repetition, seed, verdict, simulated, 0.0 FROM execution ORDER BY id",
+    "clause": "SELECT * FROM clause ORDER BY execution, position",
+}
+"""Table of the database → the query of its rows, in the order of its columns; wall times are 0."""
+
 
 @dataclass(frozen=True, slots=True)
 class CombinationCount:
@@ -149,6 +159,13 @@ class StudyReader:
         """Return verdict, margin and instant of each clause of the execution with this number."""
         query = "SELECT verdict, robustness, at FROM clause WHERE execution = ? ORDER BY position"
         return [(OUTCOMES[verdict], margin, at) for verdict, margin, at in self._rows(query, (number,))]
+
+    def tables(self) -> Mapping[str, list[tuple[Any, ...]]]:
+        """Return the rows of each table of ``TABLES``, without wall times and names of machines."""
+        found = {name: list(self._rows(query)) for name, query in TABLES.items()}
+        hosts = {host for (host,) in self._rows("SELECT DISTINCT host FROM batch")}
+        found["word"] = [(key, f"machine {key}" if key in hosts else content) for key, content in found["word"]]
+        return found
 
     def wall(self) -> float:
         """Return the sum of the wall times of all executions in s."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 import json
 import platform
 import sqlite3
-from collections.abc import Generator, Iterable, Mapping
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from robbdd_tools.base.writing import replace_file
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.database import explained, open_database, transaction
 from robbdd_tools.run.results import unjudged
-from robbdd_tools.run.study_reader import OUTCOMES, StudyReader
+from robbdd_tools.run.study_reader import OUTCOMES, TABLES, StudyReader, read_study_store
 from robbdd_tools.run.study_schema import MIGRATIONS, NAME
 
 if TYPE_CHECKING:
@@ -98,3 +98,16 @@ class StudyStore(StudyReader):
     def _writing(self) -> Generator[sqlite3.Connection]:
         with explained(self.path), transaction(self._connection):
             yield self._connection
+
+
+def restore(folder: Path, tables: Mapping[str, Sequence[Sequence[object]]]) -> StudyReader:
+    """Write the rows of ``StudyReader.tables`` into a new store, and open it for reading.
+
+    Raises ``DatabaseProblem``, and ``ValueError`` for rows that do not fit the tables.
+    """
+    path = folder / NAME
+    with explained(path), closing(open_database(path, migrations=MIGRATIONS)) as connection, transaction(connection):
+        for name in TABLES:
+            for row in tables[name]:
+                connection.execute(f"INSERT INTO {name} VALUES ({', '.join('?' * len(row))})", tuple(row))
+    return read_study_store(folder)
