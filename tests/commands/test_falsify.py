@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from campaign.study_agents import QuickAgent, write_study
-from campaign.test_designs import HEAD, RANGES, VARIED
+from campaign.test_designs import HEAD, QUANTITIES, RANGES, VARIED
 from kit import ROOT
 from robbdd_tools.cli import main
 from robbdd_tools.protocol.messages import ClauseJudged, RunMessage, ScenarioFinished, ScenarioStarted
@@ -27,14 +27,36 @@ class LowDrops(QuickAgent):
 
     seeds: ClassVar[set[int]] = set()
 
+    def limit(self, seed: int) -> float:
+        """The height (m) below which an execution with this seed fails."""
+        del seed
+        return 0.24
+
     def executed(self, index: int, spec: ScenarioSpec) -> Iterator[RunMessage]:
         values = {plain_name(name): value for name, value in spec.values.items()}
         LowDrops.seeds.add(spec.seed)
-        margin = float(values["drop"]) - 0.24
+        margin = float(str(values["drop"]).split()[0]) - self.limit(spec.seed)
         outcome = "holds" if margin >= 0 else "violated"
         yield ScenarioStarted(index)
         for clause in spec.clauses:
             yield ClauseJudged(index, clause.line, outcome, margin, "m", 1.0, "" if margin >= 0 else "too low")
+        yield ScenarioFinished(index, 1.0, 0.0, 0.0)
+
+
+class SometimesLow(LowDrops):
+    """Fails below 0.22 m with every seed, and with some seeds already below up to 0.24 m."""
+
+    def limit(self, seed: int) -> float:
+        return 0.22 + 0.02 * (seed % 5) / 4
+
+
+class Unjudged(LowDrops):
+    """Judges nothing."""
+
+    def executed(self, index: int, spec: ScenarioSpec) -> Iterator[RunMessage]:
+        yield ScenarioStarted(index)
+        for clause in spec.clauses:
+            yield ClauseJudged(index, clause.line, "unknown", None, "", None, "there is no model for 'rim'")
         yield ScenarioFinished(index, 1.0, 0.0, 0.0)
 
 
@@ -68,6 +90,43 @@ def test_the_nearest_failure_is_printed_written_and_repeated(study: Path, capsys
     assert main(["falsify", str(study), "--json", "found.json", "--jobs", "1"]) == 1
     assert Path("found.json").read_bytes() == before
     assert capsys.readouterr().out == printed
+
+
+def test_the_values_to_keep_fail_with_all_seeds(
+    study: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scheduler, "Agent", SometimesLow)
+    assert main(["falsify", str(study), "--json", "found.json"]) == 1
+    printed = capsys.readouterr().out
+    document = json.loads(Path("found.json").read_text(encoding="utf-8"))
+    jsonschema.validate(document, SCHEMA)
+    assert 0.22 < document["nearest"]["drop"] < 0.24
+    assert document["first"]["drop"] < document["sure"]["drop"] < 0.22
+    assert document["sure"]["drop"] == pytest.approx(0.22, abs=0.003)
+    assert "all 40 fail at the values below: for any seed, the boundary is between both\n" in printed
+    assert f"    var <drop>: {{ {document['sure']['drop']!r} }}\n" in printed
+
+
+def test_values_of_a_model_with_quantities_are_printed_as_quantities(
+    study: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(LowDrops, "limit", lambda *_: 24.0)
+    text = f"{HEAD} factor var <drop>: from 20 cm to 40 cm design: grid 2\n}}\n"
+    write_study(study.parent, text, QUANTITIES)
+    assert main(["falsify", str(study)]) == 1
+    (row,) = (line for line in capsys.readouterr().out.splitlines() if line.startswith("    var "))
+    assert row.startswith("    var <drop>: { 23.9")
+    assert row.endswith(" cm }")
+
+
+def test_a_model_that_cannot_be_judged_is_not_searched(
+    study: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scheduler, "Agent", Unjudged)
+    assert main(["falsify", str(study)]) == 2
+    error = capsys.readouterr().err
+    assert "no execution can be judged at the nominal values: " in error
+    assert "there is no model for 'rim'" in error
 
 
 def test_nominal_values_that_fail_end_the_search(study: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -103,7 +103,7 @@ def shrink(evaluate: Evaluate, nominal: Point, failure: Failure) -> Failure:
     end = best.point
     for _ in range(ROUNDS):
         shares = [low + (high - low) * part / PARTS for part in range(1, PARTS)]
-        tried = evaluate([_between(nominal, end, share) for share in shares])
+        tried = evaluate([between(nominal, end, share) for share in shares])
         evaluated += len(tried)
         first = next((index for index, one in enumerate(tried) if one.fails), None)
         if first is None:
@@ -112,7 +112,7 @@ def shrink(evaluate: Evaluate, nominal: Point, failure: Failure) -> Failure:
         best = tried[first]
         high = shares[first]
         low = shares[first - 1] if first else low
-    return replace(failure, nearest=best, passing=_between(nominal, end, low), evaluated=evaluated)
+    return replace(failure, nearest=best, passing=between(nominal, end, low), evaluated=evaluated)
 
 
 def _subsets(nominal: Point, failing: Point) -> Iterator[list[Point]]:
@@ -124,7 +124,8 @@ def _subsets(nominal: Point, failing: Point) -> Iterator[list[Point]]:
             yield [tuple(failing[i] if i in some else value for i, value in enumerate(nominal)) for some in kept]
 
 
-def _between(nominal: Point, failing: Point, share: float) -> Point:
+def between(nominal: Point, failing: Point, share: float) -> Point:
+    """Return the point after a share of the way from one point to another one."""
     return tuple(one + share * (other - one) for one, other in zip(nominal, failing, strict=True))
 
 

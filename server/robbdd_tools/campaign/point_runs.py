@@ -16,6 +16,7 @@ from robbdd_tools.campaign.failure_search import Evaluation, Point
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ScenarioFinished
 from robbdd_tools.protocol.specs import plain_name
+from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.store import begin_in
 from robbdd_tools.workbench.plan import Plan
 from robbdd_tools.workbench.points import Points, common_seeds
@@ -39,7 +40,8 @@ class PointRuns:
     """Executes points, each with the same ``repeat`` seeds, which follow from ``seed``.
 
     The robustness of an execution is the smallest margin of its clauses, each divided by its margin at the first
-    evaluated point, so that margins of different units can be compared. An unknown verdict is no failure.
+    evaluated point, so that margins of different units can be compared. An unknown verdict is no failure; ``reason`` is
+    why the first such execution is unknown.
     """
 
     study: Study
@@ -48,20 +50,34 @@ class PointRuns:
     seed: int = 1
     executions: int = 0
     unknown: int = 0
+    reason: str = ""
     on_progress: Callable[[int], None] = lambda _: None
     _scales: dict[str, float] = field(default_factory=dict[str, float])
     _run: Run | None = None
-    _reason: str = ""
+    _ending: str = ""
 
     def cancel(self, reason: str) -> None:
         """End the executions. It may be called from any thread or signal handler."""
-        self._reason = self._reason or reason
+        self._ending = self._ending or reason
         if self._run is not None:
             self._run.cancel(reason)
 
     def values(self, point: Point) -> tuple[float, ...]:
         """Return the values of the variables at a point of the unit box."""
         return tuple(map(value_at, self.study.content.ranges, point))
+
+    def written(self, point: Point, group: Sequence[ScenarioResult]) -> list[str]:
+        """Return the values at a point as the model writes them: with a unit if its values are quantities.
+
+        ``group`` are some executions of the study.
+        """
+        quantities = {
+            plain_name(name) for one in group for name, value in one.spec.values.items() if isinstance(value, str)
+        }
+        return [
+            f"{value!r} {one.unit}" if one.unit and _plain(one.variable.text) in quantities else repr(value)
+            for one, value in zip(self.study.content.ranges, self.values(point), strict=True)
+        ]
 
     def evaluate(self, points: Sequence[Point]) -> list[Evaluation]:
         """Execute all scenarios at some points. Raises ``SearchEnded`` and the errors of ``Run.begin``."""
@@ -100,19 +116,21 @@ class PointRuns:
         place = begin_in(Path(folder), kept=False)
         with Run.begin(plan, place, self.policy, repeat=self.repeat, on_close=remove) as run:
             self._run = run
-            if self._reason:
-                run.cancel(self._reason)
+            if self._ending:
+                run.cancel(self._ending)
             for message in run.messages():
                 if isinstance(message, ScenarioFinished):
                     self.executions += 1
                     self.on_progress(self.executions)
-            ending = run.problem or self._reason or run.ending
+            ending = run.problem or self._ending or run.ending
             if ending:
                 raise SearchEnded(ending)
             return run.progress.scenarios
 
     def _evaluation(self, point: Point, group: Sequence[ScenarioResult]) -> Evaluation:
-        self.unknown += sum(one.verdict is Outcome.UNKNOWN for one in group)
+        unknown = [one for one in group if one.verdict is Outcome.UNKNOWN]
+        self.unknown += len(unknown)
+        self.reason = self.reason or next((_why_unknown(one) for one in unknown), "")
         robustness = min((self._robustness(one) for one in group), default=NO_MARGIN)
         return Evaluation(point, robustness, any(map(fails, group)))
 
@@ -131,6 +149,15 @@ class PointRuns:
 def fails(scenario: ScenarioResult) -> bool:
     """Return whether a clause of an execution is violated."""
     return scenario.verdict is Outcome.VIOLATED
+
+
+def _why_unknown(scenario: ScenarioResult) -> str:
+    """Return the clause that is the first to be unknown, and the reason."""
+    for clause in scenario.spec.clauses:
+        judged = scenario.judged.get(clause.line)
+        if judged is not None and judged.verdict == Outcome.UNKNOWN:
+            return f"{clause_title(clause)}: {judged.reason}"
+    return ""
 
 
 def _plain(variable: str) -> str:

@@ -12,7 +12,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.campaign.failure_search import CMA_ES, Failure, find_failure
+from robbdd_tools.campaign.failure_search import CMA_ES, Failure, between, find_failure
 from robbdd_tools.campaign.point_runs import PointRuns, SearchEnded, fails
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
@@ -32,6 +32,8 @@ PAUSE = 5.0
 """Seconds between two lines of progress."""
 FRESH, FRESH_SEED = 10, 1_000_003
 """The failure is repeated this many times, with seeds that follow from ``FRESH_SEED``, to see how often it occurs."""
+HALVINGS = 4
+"""The way from the nearest failure to one that occurs with all seeds is halved this often."""
 MOST_SHOWN = 5
 
 
@@ -83,6 +85,8 @@ def _search(study: Study, options: FalsifyOptions) -> int:
     try:
         with end_requests(cancel):
             (first,) = runs.evaluate([nominal])
+            if runs.unknown == runs.executions:
+                return fail(f"no execution can be judged at the nominal values: {runs.reason}")
             if first.fails:
                 _, group = runs.failing(nominal, seed)
                 print_line("the nominal values fail already:")
@@ -114,17 +118,20 @@ def _report(study: Study, runs: PointRuns, nominal: Point, found: Failure, optio
     farther, others = again.failing(found.first.point, FRESH_SEED)
     at_nearest = f"with other seeds, {often} of {len(fresh)} executions fail there"
     print_line(f"{at_nearest}, and {farther} of {len(others)} at the first failure")
+    sure = found.nearest.point if often == len(fresh) else _sure_failure(again, nominal, found)
+    kept, with_seeds = sure or found.nearest.point, "" if sure else ", with which not all executions fail"
+    if sure not in (None, found.nearest.point):
+        print_line(f"all {len(fresh)} fail at the values below: for any seed, the boundary is between both")
     print_line("")
-    print_line("to keep it as a scenario, give the variables of the variation these values:")
-    for one, value, base in zip(
-        study.content.ranges, runs.values(found.nearest.point), runs.values(nominal), strict=True
-    ):
+    print_line(f"to keep it as a scenario, give the variables of the variation these values{with_seeds}:")
+    written, usual = runs.written(kept, fresh), runs.written(nominal, fresh)
+    for one, value, base in zip(study.content.ranges, written, usual, strict=True):
         print_line(
-            printable(f"    var <{one.variable.text}>: {{ {value!r} }}{'' if value != base else '  // as nominal'}")
+            printable(f"    var <{one.variable.text}>: {{ {value} }}{'' if value != base else '  // as nominal'}")
         )
     _print_unknown(runs)
     if options.json is not None:
-        document = _document(study, runs, nominal, found, (often, len(fresh)))
+        document = _document(study, runs, nominal, found, (often, len(fresh)), sure)
         replace_file(options.json, f"{printable_json(document, indent=2)}\n")
     return FINDINGS
 
@@ -145,8 +152,33 @@ def _rows(study: Study, runs: PointRuns, nominal: Point, found: Failure) -> Iter
         yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
 
 
+def _sure_failure(again: PointRuns, nominal: Point, found: Failure) -> Point | None:
+    """Return a point near to the nearest failure at which executions with all other seeds fail, ``None`` if unknown.
+
+    It is on the way from the nearest failure to the first one, along the variables that matter.
+    """
+    assert found.first is not None
+    assert found.nearest is not None
+    near = found.nearest.point
+    far = tuple(
+        there if here != base else base for here, there, base in zip(near, found.first.point, nominal, strict=True)
+    )
+
+    def all_fail(point: Point) -> bool:
+        failing, group = again.failing(point, FRESH_SEED)
+        return failing == len(group)
+
+    if not all_fail(far):
+        return None
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if all_fail(between(near, far, middle)) else (middle, high)
+    return between(near, far, high)
+
+
 def _document(
-    study: Study, runs: PointRuns, nominal: Point, found: Failure, fresh: tuple[int, int]
+    study: Study, runs: PointRuns, nominal: Point, found: Failure, fresh: tuple[int, int], sure: Point | None
 ) -> dict[str, object]:
     assert found.first is not None
     assert found.nearest is not None
@@ -160,6 +192,7 @@ def _document(
         "passing": values(found.passing),
         "nearest": values(found.nearest.point),
         "first": values(found.first.point),
+        "sure": None if sure is None else values(sure),
         "points": found.searched,
         "executions": runs.executions,
         "unknown": runs.unknown,
@@ -178,7 +211,8 @@ def _print_failures(group: list[ScenarioResult]) -> None:
 
 def _print_unknown(runs: PointRuns) -> None:
     if runs.unknown:
-        print_line(f"{runs.unknown} executions have an unknown verdict; they count as no failure")
+        print_line(f"{runs.unknown} executions have an unknown verdict; they count as no failure. The first one:")
+        print_line(printable(f"    {runs.reason}"))
 
 
 def _nominal(study: Study, stated: Mapping[str, float]) -> Point:
