@@ -27,7 +27,7 @@ def test_a_survivor_is_named_at_its_template_with_a_clause_that_notices_it(bench
     assert done.returncode == 1, done.stderr
     missing = "pickplace.bdd:13: template pick-place: nothing notices that places to put down are seen 50 mm too high"
     assert missing in done.stdout
-    clause = "holds(<robot> does not drop <thing>, from <evt-start> until <evt-end>)"
+    clause = "does-not-drop: holds(<robot> does not drop <thing>, from <evt-start> until <evt-end>)"
     assert f"    this clause notices it: {clause}\n" in done.stdout
     assert "no-release          1/1      ·          ·              ·        1        ·\n" in done.stdout
     assert done.stdout.rstrip().endswith("1 of 2 faults are noticed in every execution")
@@ -42,7 +42,7 @@ def test_a_survivor_is_named_at_its_template_with_a_clause_that_notices_it(bench
     text = model.read_text(encoding="utf-8")
     end = "until <evt-place-end>)\n        )"
     assert end in text
-    model.write_text(text.replace(end, f"until <evt-place-end>)\n and\n kept: {clause}\n )"), encoding="utf-8")
+    model.write_text(text.replace(end, f"until <evt-place-end>)\n and\n {clause}\n )"), encoding="utf-8")
     done = robbdd(*command, folder=bench)
     assert (done.returncode, "nothing notices" in done.stdout) == (0, False), done.stdout
 

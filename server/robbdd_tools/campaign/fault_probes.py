@@ -91,11 +91,11 @@ class ProbedTemplate:
     words: tuple[tuple[str, str], ...]
 
     def written(self, probe: Probe) -> str:
-        """Return a probe as a clause of the template."""
+        """Return a probe as a clause of the template. It is named after its predicate, as clauses should have a name."""
         text = probe.text
         for name, word in self.words:
             text = text.replace(f"{{{name}}}", word)
-        return text
+        return f"{probe.predicate}: {text}"
 
 
 def with_probes(spec: ScenarioSpec) -> ScenarioSpec:
