@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from robbdd_tools.campaign.exact_power import executions_to_show, pairs_to_show
 from robbdd_tools.campaign.markdown_text import escaped, markdown_table
-from robbdd_tools.campaign.rates import executions_needed, pairs_needed
 from robbdd_tools.campaign.run_comparison import Change, ClauseEffect, Decision, RunComparison
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.report import MINUS, SIGNS, margin
@@ -131,9 +131,9 @@ def signed(value: float) -> str:
 def _needed(effect: ClauseEffect, accepted: float, found: RunComparison) -> int:
     if found.matched.paired:
         flipped = (effect.rates.gained + effect.rates.lost + 1) / (effect.before.total + 2)
-        return pairs_needed(min(1.0, max(flipped, accepted)), accepted, POWER, found.level)
+        return pairs_to_show(min(1.0, max(flipped, accepted)), accepted, POWER, found.level)
     share = (effect.before.holding + 1) / (effect.before.total + 2)
-    return executions_needed(max(share, accepted), -accepted, POWER, found.level)
+    return executions_to_show(max(share, accepted), -accepted, POWER, found.level)
 
 
 def _rate(counted: Rate) -> str:

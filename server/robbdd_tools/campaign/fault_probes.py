@@ -91,7 +91,7 @@ class ProbedTemplate:
     words: tuple[tuple[str, str], ...]
 
     def written(self, probe: Probe) -> str:
-        """Return a probe as a clause of the template. It is named after its predicate, as clauses should have a name."""
+        """Return a probe as a clause of the template, named after its predicate."""
         text = probe.text
         for name, word in self.words:
             text = text.replace(f"{{{name}}}", word)

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from robbdd_tools.campaign.rates import (
-    StatisticsNotInstalled,
-    executions_for_width,
-    executions_needed,
-    pairs_needed,
-)
+from robbdd_tools.campaign.exact_power import executions_to_show, pairs_to_show
+from robbdd_tools.campaign.rates import StatisticsNotInstalled, executions_for_width
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line
 
@@ -57,10 +53,10 @@ def _lines(options: PlanOptions) -> Iterator[str]:
     change = abs(options.difference)
     shown = f"a change of {100 * options.difference:+g} points from {_percent(options.rate)}"
     shown += f", power {_percent(options.power)}"
-    number = executions_needed(options.rate, options.difference, options.power, options.level)
+    number = executions_to_show(options.rate, options.difference, options.power, options.level)
     yield f"{number:,} executions before and {number:,} after, independent: {shown}"
     flipped = change if options.discordance is None else options.discordance
-    number = pairs_needed(flipped, options.difference, options.power, options.level)
+    number = pairs_to_show(flipped, options.difference, options.power, options.level)
     assumed = " (no flips back)" if options.discordance is None else ""
     yield f"{number:,} pairs with equal seeds, of which {_percent(flipped)} flip{assumed}: {shown}"
 
