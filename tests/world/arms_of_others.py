@@ -27,6 +27,8 @@ HEIGHT = 0.15
 """Height (m) of the arm's base above the table, as that of the catalog's arms."""
 NEAR = 0.15
 """Distance (m) of the cube from the middle of the bin up to which it is in the bin."""
+_MANI_SKILL = "mani_skill/assets/robots"
+_EXAMPLES = "cmeel.prefix/share/example-robot-data/robots"
 _PYBULLET, _ROBOSUITE = "pybullet_data", "robosuite/models/assets"
 _ATTACHED = """import mujoco
 
@@ -45,6 +47,7 @@ class Arm:
 
     - ``path``: its file in the folder, and ``hand`` that of a gripper that has to be fixed to it.
     - ``forward``: how much (m) nearer to the table than the catalog's arms its base stands.
+    - ``height``: height (m) of its base above the table.
     - ``friction``: the stated coefficient between gripper and cube; 0 means that the files decide.
     - ``works``: the number of seeds from 1 to 10 with which the cube ends in the bin.
     """
@@ -55,6 +58,7 @@ class Arm:
     hand: str = ""
     forward: float = 0.0
     friction: float = 0.0
+    height: float = HEIGHT
 
 
 def _robosuite(name: str, folder: str, works: int, hand: str, forward: float = 0.0, friction: float = 0.0) -> Arm:
@@ -72,6 +76,15 @@ ARMS = (
     _robosuite("gen3-of-robosuite", "kinova3", 10, "panda", forward=0.08),
     _robosuite("jaco-of-robosuite", "jaco", 10, "panda", forward=0.08),
     _robosuite("xarm7-of-robosuite", "xarm7", 10, "panda", forward=0.08),
+    Arm("fetch-of-mani-skill", f"{_MANI_SKILL}/fetch/fetch.urdf", 10, forward=-0.1, height=-0.64),
+    Arm("panda-of-mani-skill", f"{_MANI_SKILL}/panda/panda_v2.urdf", 10),
+    Arm("panda-with-camera-of-mani-skill", f"{_MANI_SKILL}/panda/panda_v3.urdf", 10),
+    Arm("panda-that-pinches-of-mani-skill", f"{_MANI_SKILL}/panda/panda_pinch.urdf", 10),
+    Arm("panda-of-example-robot-data", f"{_EXAMPLES}/panda_description/urdf/panda.urdf", 10),
+    Arm(
+        "panda-urdf-of-robosuite", "robosuite/models/assets/bullet_data/panda_description/urdf/panda_arm_hand.urdf", 10
+    ),
+    Arm("panda-of-gym-hil", "gym_hil/assets/scene.xml", 10),
 )
 
 
@@ -79,7 +92,8 @@ def source_of(arm: Arm, folder: Path) -> ModelSource:
     """Return the source of an arm. Code that composes it is written to ``folder``."""
     if not arm.hand:
         path = FOLDER / arm.path
-        return ModelSource("x:arm", "urdf", "file", str(path), origin=Origin(str(path), 1, 1))
+        kind = "urdf" if path.suffix == ".urdf" else "mjcf"
+        return ModelSource(f"x:{arm.name}", kind, "file", str(path), origin=Origin(str(path), 1, 1))
     module = arm.name.replace("-", "_")
     code = _ATTACHED.format(arm=str(FOLDER / arm.path), hand=str(FOLDER / arm.hand))
     (folder / f"{module}.py").write_text(code, encoding="utf-8")
@@ -94,7 +108,7 @@ def picking(arm: Arm, folder: Path, seed: int) -> Execution:
         "x:cell",
         elements=(Realisation(OWN, (source,)),),
         bodies=(Body("x:room", ("x:root",)), Body("x:own", ("x:own.foot",))),
-        links=(Link("x:own.foot", "x:root", "pose", (arm.forward, 0.0, HEIGHT), (1.0, 0.0, 0.0, 0.0)),),
+        links=(Link("x:own.foot", "x:root", "pose", (arm.forward, 0.0, arm.height), (1.0, 0.0, 0.0, 0.0)),),
         anchor="x:root",
         frictions=(Friction(OWN, CUBE, arm.friction),) if arm.friction else (),
     )

@@ -23,6 +23,7 @@ from robbdd_tools.catalog.executable import (
 )
 from robbdd_tools.protocol.specs import ExecutionSpec
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.motion import ToolPose, frame_of
@@ -128,6 +129,28 @@ def test_a_cup_is_found_by_its_vacuum_or_by_the_face_that_is_named(tmp_path: Pat
         found = robot(tmp_path, text, arm)
         assert found.gripper is GripperKind.SUCTION
         assert (found.gripper_open, found.gripper_closed, found.stroke) == (0.0, 1.0, 0.024)
+
+
+@pytest.mark.physics
+def test_a_light_spindle_turns_to_its_target(tmp_path: Path) -> None:
+    """A cup on a thin spindle has an inertia of 1e-4 kg m²; its motor has 10 N m."""
+    spindle = """<mujoco><compiler angle="radian"/><worldbody><body name="base"><geom size=".05"/>
+    <body name="arm" pos="0 0 .4"><joint name="swing" axis="0 0 1"/><geom type="capsule" size=".03 .15" pos=".15 0 0"/>
+    <body name="fore" pos=".3 0 0"><joint name="bend" axis="0 0 1"/><geom type="capsule" size=".03 .15" pos=".15 0 0"/>
+    <body name="spindle" pos=".3 0 0"><joint name="down" type="slide" axis="0 0 -1" range="-.05 .3"/>
+    <joint name="turn" axis="0 0 -1"/><geom type="cylinder" size=".01 .2" mass=".5"/>
+    <geom type="cylinder" size=".011 .005" pos="0 0 -.205" mass=".02"/></body></body></body></body></worldbody>
+    <actuator><motor joint="turn" ctrlrange="-10 10"/><adhesion body="spindle" gain="30" ctrlrange="0 1"/></actuator>
+    </mujoco>"""
+    found = robot(tmp_path, spindle)
+    spec = prepared_robot(found.mjcf)
+    assert spec is not None
+    model = spec.compile()
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    data = mujoco.MjData(model)
+    data.ctrl[model.actuator("turn-servo").id] = 1.0
+    mujoco.mj_step(model, data, 1000)
+    assert data.joint("turn").qpos[0] == pytest.approx(1.0, abs=0.01)
 
 
 def test_what_a_scene_states_replaces_what_the_file_says(tmp_path: Path) -> None:

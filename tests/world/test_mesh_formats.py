@@ -51,6 +51,11 @@ STL = "\n".join(
 )
 
 
+def _written(folder: Path, name: str, text: str) -> Path:
+    (folder / name).write_text(text, encoding="utf-8")
+    return folder / name
+
+
 def urdf(folder: Path, name: str, text: str, kind: str = "collision", scale: str = "1 1 1") -> Path:
     (folder / name).write_text(text, encoding="utf-8")
     path = folder / "box.urdf"
@@ -76,6 +81,17 @@ def test_the_unit_of_a_mesh_counts_and_its_vertical_does_not(tmp_path: Path, nam
     assert all(
         min(abs(place), abs(place - 2 * unit * side)) < 1e-5 for place, side in zip(corner, (1, 2, 3), strict=True)
     )
+
+
+def test_converted_meshes_stand_beside_others_in_any_world(tmp_path: Path) -> None:
+    (tmp_path / "box.stl").write_bytes(as_stl(_written(tmp_path, "other.ply", PLY)))
+    path = urdf(tmp_path, "box.ply", PLY)
+    readable = '<collision><geometry><mesh filename="box.stl" scale="2 2 2"/></geometry></collision></link>'
+    path.write_text(path.read_text(encoding="utf-8").replace("</link>", readable), encoding="utf-8")
+    world = mujoco.MjSpec()
+    world.attach(read_urdf(path).copy(), prefix="env:own/", frame=world.worldbody.add_frame())
+    extents = sorted(float(box[3:].max()) for box in world.compile().geom_aabb)
+    assert extents == pytest.approx([1.5, 3.0])
 
 
 def test_without_the_reader_the_message_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

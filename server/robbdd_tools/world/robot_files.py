@@ -10,7 +10,7 @@ import numpy as np
 from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.catalog.executable import ArmModel, ModelEntry
 from robbdd_tools.world.arm_chain import chain_to_palm
-from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import (
     fix_joints,
@@ -43,6 +43,8 @@ SLIDING = 10.0
 """For a sliding joint, the smallest gains (N/m, N s/m) are this many times as large."""
 FREQUENCY, RATIO = 20.0, 0.7
 """Natural frequency (rad/s) and damping ratio of servos that are added to joints with a large inertia."""
+LIGHT, ROTOR = 0.01, 0.1
+"""A joint with an inertia below this share (``LIGHT``) of damping times time step gets a rotor with the other share."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
@@ -189,6 +191,9 @@ def _servos(spec: Any, joints: tuple[str, ...]) -> None:
         servo.set_to_position(kp=stiffness, kv=damping)
         if limit > 0:
             servo.forcerange, servo.forcelimited = [-limit, limit], True
+            if inertias[joint] < LIGHT * damping * TIMESTEP:
+                # At its force limit, a servo of so light a joint would hit back and forth. Real drives have rotors.
+                spec.joint(joint).armature += ROTOR * damping * TIMESTEP
 
 
 def _is_position_servo(actuator: Any) -> bool:

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from robbdd_tools.base.files import open_regular
 from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
@@ -52,6 +53,8 @@ def read_urdf(path: Path) -> Any:
         for kind in ("visual", "collision"):
             for shape in link.findall(kind):
                 _use_mesh(path, link, shape, converted)
+    if converted:
+        _serve_all(root, converted)
     if root.find("mujoco") is None:
         settings = ElementTree.SubElement(root, "mujoco")
         ElementTree.SubElement(settings, "compiler", {"discardvisual": "false", "strippath": "false"})
@@ -129,13 +132,28 @@ def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element,
     begin = f"the collision mesh '{name}' of the link '{link.get('name')}'"
     if found is None:
         raise ValueError(f"{begin} is not on this machine; looked for {', '.join(map(str, mesh_places(path, name)))}")
-    # The engine names a mesh after its file, so each file has one name.
-    address = f"{CONVERTED}-{sha256(str(found).encode()).hexdigest()[:12]}.stl"
+    address = f"{_address(found)}.stl"
     try:
         converted[address] = as_stl(found)
     except UnreadableMesh as error:
         raise ValueError(f"{begin} {error}") from error
     mesh.set("filename", address)
+
+
+def _serve_all(root: ElementTree.Element, converted: dict[str, bytes]) -> None:
+    """Add the meshes that the engine reads to ``converted``: it takes all meshes of a model from there, or none."""
+    for mesh in root.iter("mesh"):
+        name = mesh.get("filename", "")
+        if name not in converted:
+            address = f"{_address(Path(name))}{Path(name).suffix.lower()}"
+            with open_regular(Path(name)) as file:
+                converted[address] = file.read()
+            mesh.set("filename", address)
+
+
+def _address(path: Path) -> str:
+    """Return a name for a mesh file; the engine names a mesh after its file, so each file has one name."""
+    return f"{CONVERTED}-{sha256(str(path).encode()).hexdigest()[:12]}"
 
 
 def _mend_inertias(root: ElementTree.Element) -> None:
