@@ -13,8 +13,10 @@ from robbdd_tools.world.mesh_formats import UnreadableMesh, as_stl, is_readable
 from robbdd_tools.world.urdf_files import impossible_inertias, read_urdf
 
 CORNERS = [(x, y, z) for x in (0, 1) for y in (0, 2) for z in (0, 3)]
-FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4)]
-FACES += [(1, 5, 7), (1, 7, 3)]
+FACES = [
+    *[(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)],
+    *[(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)],
+]
 NUMBERS = " ".join(str(number) for corner in CORNERS for number in corner)
 INDICES = " ".join(str(number) for face in FACES for number in face)
 DAE = f"""<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">

@@ -18,8 +18,16 @@ from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.motion import ToolPose, tool_pose
 from robbdd_tools.world.put_down import Target, has_room, on_tables, targets
-from robbdd_tools.world.reaching import Approach, Obstruction, approaches, either_way, joints_at
-from robbdd_tools.world.travel_clearance import height_over
+from robbdd_tools.world.reaching import (
+    Approach,
+    Obstruction,
+    approaches,
+    either_way,
+    is_high,
+    joints_at,
+    over_support,
+)
+from robbdd_tools.world.travel_clearance import height_over, is_roofed
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -35,6 +43,8 @@ of a millimetre and some milliradians.
 """
 PATIENCE = 30.0
 """Maximum wait for an object to come to rest, s."""
+ROOM = 0.02
+"""Room (m) below an object that is carried from or to a high support (``reaching.HIGH``)."""
 RISE = 1e-3
 """If the travelling height is more than this (m) above the tool, it rises first: on a slant it could hit the place."""
 
@@ -57,6 +67,7 @@ class PickPlace(ArmControl):
         self._emit = emit
         self._note_choice = note_choice
         self._grasp: Grasp | None = None
+        self._from_high = False
 
     def pick(self, name: str) -> Step:
         """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``.
@@ -75,7 +86,8 @@ class PickPlace(ArmControl):
         best = yield from self._approach(name)
         yield from self._take(best, name, since)
         self.held, self._grasp = name, best.grasp
-        yield from self.move(self.at_travel(best.at))
+        self._from_high = is_high(self.robot, best.at, best.grasp.below)
+        yield from self.move(best.above)
 
     def place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Carry the held object to a workspace and release it; raises ``BehaviourError``.
@@ -111,7 +123,7 @@ class PickPlace(ArmControl):
         self.held = None
         yield from self.gripper.release(self)
         yield from self.wait(round(self.robot.model.release_time / TICK))
-        yield from self.move(self.at_travel(down))
+        yield from self.move(over_support(self.simulation, self.robot, name, down, grasp.below))
 
     def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""
@@ -230,6 +242,8 @@ class PickPlace(ArmControl):
         """Return the pose above ``pose`` to which the tool carries an object, high enough to clear shapes below."""
         over = self.at_travel(pose)
         room = self.robot.model.carry_clearance
+        if not room and (self._from_high or is_high(self.robot, pose, grasp.below)):
+            room = 0.0 if is_roofed(self.simulation, self.robot, name, pose) else ROOM
         if not room:
             return over
         here = self.tool

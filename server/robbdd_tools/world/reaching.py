@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import nan, pi
@@ -17,6 +17,7 @@ from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.grasp import Grasp
 from robbdd_tools.world.gripper import gripper_of
 from robbdd_tools.world.motion import ToolPose, frame_of, tool_pose
+from robbdd_tools.world.travel_clearance import is_roofed
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
 
 NONE = -pi
 """Reach margin (rad) without a collision-free grasp within the joint limits."""
+HIGH, LIFT = 0.25, 0.10
+"""A support above ``HIGH`` (m, world frame), 0.15 m above usual tables, is near or above the travelling height.
+
+There, objects are approached and left ``LIFT`` (m) above the grasp.
+"""
 SAME = 1e-4
 """A sample reuses the previous reach margin if the state has changed by less than this (m, rad)."""
 
@@ -71,6 +77,22 @@ def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
     return replace(pose, height=max(height, pose.height))
 
 
+def is_high(robot: Robot, pose: ToolPose, below: float) -> bool:
+    """Return whether what a tool holds, ``below`` m above its support, is on a support near the travelling height."""
+    return pose.height + robot.base.position[2] - below > HIGH
+
+
+def over_support(simulation: Simulation, robot: Robot, name: str, pose: ToolPose, below: float) -> ToolPose:
+    """Return the pose above a tool pose at which an object is approached or left.
+
+    It is at the travelling height or, over a high support without a roof, at least ``LIFT`` above the pose.
+    """
+    over = at_travel(robot, pose)
+    if not is_high(robot, pose, below) or is_roofed(simulation, robot, name, pose):
+        return over
+    return replace(over, height=max(over.height, pose.height + LIFT))
+
+
 def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
     """Return the joint positions (rad) at a pose approached from above; raises ``Unreachable``."""
     missed: Unreachable | None = None
@@ -108,17 +130,28 @@ def approaches(
     data = simulation.data if data is None else data
     clearance = Clearance(simulation, robot, name, data)
     grasps = gripper_of(robot.model).grasps(name, objects[name], position, rotation)
-    yield from approaches_by(robot, grasps, clearance, missed)
+
+    def over(at: ToolPose, grasp: Grasp) -> ToolPose:
+        return over_support(simulation, robot, name, at, grasp.below)
+
+    yield from approaches_by(robot, grasps, clearance, missed, over)
 
 
 def approaches_by(
-    robot: Robot, grasps: Iterable[Grasp], clearance: Clearance, missed: Obstruction | None = None
+    robot: Robot,
+    grasps: Iterable[Grasp],
+    clearance: Clearance,
+    missed: Obstruction | None = None,
+    over: Callable[[ToolPose, Grasp], ToolPose] | None = None,
 ) -> Iterator[Approach]:
-    """Yield the grasps within the joint limits; ``missed`` records how far the others are out of reach."""
+    """Yield the grasps within the joint limits; ``missed`` records how far the others are out of reach.
+
+    ``over`` returns the pose from which a grasp is approached; by default, it is at the travelling height.
+    """
     arm = arm_of(robot.model)
     for grasp in grasps:
         for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
-            above = at_travel(robot, at)
+            above = at_travel(robot, at) if over is None else over(at, grasp)
             try:
                 joints = joints_at(arm, above, at)
             except Unreachable as error:

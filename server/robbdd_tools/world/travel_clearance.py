@@ -30,8 +30,16 @@ def height_over(simulation: Simulation, robot: Robot, name: str, start: ToolPose
     radius = _radius(simulation, name)
     points = np.array(list(_points(robot, start, goal)))
     others = (other for other in simulation.world.cast.objects if other != name)
-    tops = (top for other in others for top in _tops(simulation, other, points, radius))
+    tops = (top for other in others for _, top in _levels(simulation, other, points, radius))
     return max(tops, default=-np.inf) - robot.base.position[2]
+
+
+def is_roofed(simulation: Simulation, robot: Robot, name: str, at: ToolPose) -> bool:
+    """Return whether something is above an object, or above the place where a tool at ``at`` would hold it."""
+    radius, height = _radius(simulation, name), at.height + robot.base.position[2]
+    points = np.array(list(_points(robot, at, at)))
+    others = (other for other in simulation.world.cast.objects if other != name)
+    return any(bottom > height for other in others for bottom, _ in _levels(simulation, other, points, radius))
 
 
 def _points(robot: Robot, start: ToolPose, goal: ToolPose) -> Iterator[tuple[float, float]]:
@@ -45,8 +53,8 @@ def _points(robot: Robot, start: ToolPose, goal: ToolPose) -> Iterator[tuple[flo
         yield x + reach * cos(direction), y + reach * sin(direction)
 
 
-def _tops(simulation: Simulation, name: str, points: FloatArray, radius: float) -> Iterator[float]:
-    """Yield the heights (m) of those shapes of an object that are nearer to the path than ``radius`` (m)."""
+def _levels(simulation: Simulation, name: str, points: FloatArray, radius: float) -> Iterator[tuple[float, float]]:
+    """Yield bottom and top (m) of those shapes of an object that are nearer to the path than ``radius`` (m)."""
     position, rotation = simulation.pose(name)
     upright = rotation[2, 2] > UPRIGHT
     turn = rotation[:2, :2] if upright else np.eye(2)
@@ -57,7 +65,8 @@ def _tops(simulation: Simulation, name: str, points: FloatArray, radius: float) 
         middle = np.array(shape.position)[:2] if upright else place[:2]
         beside = np.maximum(np.abs(flat - middle) - sides, 0.0)
         if np.hypot(beside[:, 0], beside[:, 1]).min() < radius:
-            yield float(position[2] + place[2] + half[2])
+            middle_height = float(position[2] + place[2])
+            yield middle_height - float(half[2]), middle_height + float(half[2])
 
 
 def _radius(simulation: Simulation, name: str) -> float:
