@@ -68,20 +68,18 @@ def reduce_to_arm(spec: Any, source: ModelSource) -> list[str]:
 
 
 def _leave_out_scene(spec: Any, source: ModelSource) -> list[str]:
-    """Remove the surroundings of the arm if the file is a whole scene: it has loose objects or mocap bodies.
+    """Remove the loose objects and mocap bodies of a file; return what was removed, as lines for a report.
 
-    Return what was removed, as lines for a report.
+    Fixed objects stay: the arm can collide with them.
     """
     mocaps = [body for body in spec.bodies[1:] if body.mocap and not _joints_below(body)]
     tops = list(spec.worldbody.bodies)
     loose = [body for body in tops if _is_loose(body)]
     if not any(_joints_below(body) for body in tops if not _is_loose(body)):
         loose = []
-    fixed = [body for body in tops if not body.mocap and not _joints_below(body)] if mocaps or loose else []
     removed = {
         "bodies that another program would move (mocap)": mocaps,
         "loose objects": loose,
-        "fixed objects beside the arm": fixed,
     }
     gone = {str(one.name) for bodies in removed.values() for body in bodies for one in (body, *body.find_all("body"))}
     if not gone:
@@ -91,7 +89,7 @@ def _leave_out_scene(spec: Any, source: ModelSource) -> list[str]:
     ]
     for camera in [one for one in spec.cameras if one.targetbody in gone]:
         spec.delete(camera)
-    for body in (*mocaps, *loose, *fixed):
+    for body in (*mocaps, *loose):
         spec.delete(body)
     _drop_dangling(spec, source)
     return changes
