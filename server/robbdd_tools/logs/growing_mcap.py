@@ -1,4 +1,4 @@
-"""Read the complete part of an MCAP file that is still being recorded, or whose recording was interrupted."""
+"""Read MCAP files with messages of ROS 2 or of Foxglove, complete, cut off or still being recorded."""
 
 from __future__ import annotations
 
@@ -9,19 +9,26 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mcap.reader import NonSeekingReader, make_reader
+
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.logs.event_watch import EventWatch
-from robbdd_tools.logs.foxglove_mcap import OWN_TRACE, READ, take_json
+from robbdd_tools.logs.foxglove_messages import FOXGLOVE, take_foxglove
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
-from robbdd_tools.logs.mcap_records import MAGIC, McapRecords
+from robbdd_tools.logs.mcap_records import MAGIC, McapMessage, McapRecords
+from robbdd_tools.logs.protobuf_decoding import protobuf_decoder
 from robbdd_tools.logs.ros_bag import NO_ROSBAGS, not_read, stated_clocks, take_message
 from robbdd_tools.logs.ros_messages import READERS, RosContents
 
 if TYPE_CHECKING:
-    from robbdd_tools.logs.mcap_records import McapMessage
     from robbdd_tools.protocol.event_signals import EventSignal
 
 Decoder = Callable[[bytes], Any]
+OWN_TRACE = "robbdd-trace-1"
+"""Encoding of the exact trace, which files of simulated runs contain."""
+ROS_PROFILE = "ros2"
+PLAIN = ("json", "protobuf")
+"""Encodings of messages that become plain data."""
 
 
 def is_cut(path: Path) -> bool:
@@ -32,12 +39,30 @@ def is_cut(path: Path) -> bool:
         return size <= len(MAGIC) or file.read() != MAGIC
 
 
+def is_of_ros(path: Path) -> bool:
+    """Return whether an MCAP file has the ROS 2 profile, and messages of ROS 2 only. Raises ``UnreadableLog``."""
+    try:
+        with open_regular(path) as file:
+            reader = make_reader(file)
+            summary = reader.get_summary()
+            found = set[str]() if summary is None else {one.message_encoding for one in summary.channels.values()}
+            # rosbags requires an index of the chunks.
+            is_indexed = summary is not None and bool(summary.chunk_indexes)
+            return found == {"cdr"} and is_indexed and reader.get_header().profile == ROS_PROFILE
+    except Exception as error:  # On damaged bytes the decoder raises exceptions of several types.
+        raise UnreadableLog(f"{path} cannot be read as MCAP: {error or type(error).__name__}") from error
+
+
 def read_mcap(path: Path, clocks: Mapping[str, float], signals: Iterable[EventSignal]) -> LogContents:
-    """Return the contents of an MCAP file with messages of ROS 2 or of Foxglove in JSON, or both.
+    """Return the contents of an MCAP file with messages of ROS 2, or of Foxglove in JSON or Protobuf, or both.
 
     A file without an end is read up to its last complete record. Raises ``UnreadableLog``.
     """
     log = GrowingMcap(path, clocks, signals)
+    if not is_cut(path):
+        log.read_whole()
+        log.check()
+        return log.contents()
     if not log.read():
         raise UnreadableLog(f"{path} cannot be read as MCAP: it has no complete record with a message")
     log.check()
@@ -49,14 +74,14 @@ def read_mcap(path: Path, clocks: Mapping[str, float], signals: Iterable[EventSi
 
 
 class GrowingMcap:
-    """The contents of an MCAP file with messages of ROS 2 or of Foxglove in JSON. ``read`` adds new messages."""
+    """The contents of an MCAP file with messages of ROS 2 or of Foxglove. ``read`` adds new messages."""
 
     def __init__(self, path: Path, clocks: Mapping[str, float], signals: Iterable[EventSignal]) -> None:
         self._path = path
         self._records = McapRecords(path)
         self._clocks = clocks
         self._contents, self._watch = RosContents(clocks), EventWatch(signals)
-        self._decoders: dict[str, Decoder | None] = {}
+        self._decoders: dict[tuple[str, str], Decoder | None] = {}
         self._topics: dict[str, str] = {}
 
     @property
@@ -70,24 +95,45 @@ class GrowingMcap:
         return not self._topics
 
     def read(self) -> bool:
-        """Read the new messages; return whether there were any. Raises ``UnreadableLog``."""
+        """Read the new messages, in the order of the file; return whether there were any. Raises ``UnreadableLog``."""
         count = 0
         for one in self._records.new_messages():
             count += 1
             self._take(one)
         return count > 0
 
+    def read_whole(self) -> None:
+        """Read a complete file in the order of reception, which is not always that of the file.
+
+        Raises ``UnreadableLog``.
+        """
+        try:
+            with open_regular(self._path) as file:
+                reader = make_reader(file, validate_crcs=True)
+                summary = reader.get_summary()
+                if summary is None or not summary.channels:
+                    # Without a summary of the channels, all of the file is read before the first message.
+                    file.seek(0)
+                    reader = NonSeekingReader(file, validate_crcs=True)
+                for found in reader.iter_messages():
+                    self._take(McapMessage(*found))
+        except UnreadableLog:
+            raise
+        except Exception as error:  # Damaged bytes raise exceptions of the decompressors, too.
+            raise UnreadableLog(f"{self._path} cannot be read as MCAP: {error or type(error).__name__}") from error
+
     def check(self) -> None:
         """Raise ``UnreadableLog`` if a topic that the user states has not occurred so far."""
         self._watch.check(self._topics)
-        list(stated_clocks(self._clocks, {topic: kind for topic, kind in self._topics.items() if kind in READERS}))
+        known = {topic: kind for topic, kind in self._topics.items() if kind in READERS or kind in FOXGLOVE}
+        list(stated_clocks(self._clocks, known))
 
     def contents(self) -> LogContents:
         """Return the contents that have been read so far."""
         # Finishing converts times by clocks that later messages may change.
         found = deepcopy(self._contents)
         found.remarks += self._watch.remarks
-        unread = {topic: kind for topic, kind in self._topics.items() if kind not in READERS and kind not in READ}
+        unread = {topic: kind for topic, kind in self._topics.items() if kind not in READERS and kind not in FOXGLOVE}
         found.remarks += not_read({one: unread[one] for one in unread if one not in self._watch.topics}, ())
         return found.finish()
 
@@ -96,7 +142,7 @@ class GrowingMcap:
         self._topics[topic] = kind
         if one.channel.message_encoding == OWN_TRACE:
             raise UnreadableLog(f"{self._path} is the trace of a simulated execution: judge its run, by its number")
-        if kind not in READERS and kind not in READ and topic not in self._watch.topics:
+        if kind not in READERS and kind not in FOXGLOVE and topic not in self._watch.topics:
             return
         try:
             self._take_known(one, topic, kind)
@@ -107,31 +153,39 @@ class GrowingMcap:
             raise UnreadableLog(words) from error
 
     def _take_known(self, one: McapMessage, topic: str, kind: str) -> None:
-        received = one.message.log_time
-        if one.channel.message_encoding == "json":
-            message = json.loads(one.message.data)
-            if kind in READ:
-                take_json(self._contents.found, topic, kind, received, message)
-            for event in self._watch.events(topic, message) if topic in self._watch.topics else ():
-                self._contents.found.text(topic, received, event)
+        received, encoding = one.message.log_time, one.channel.message_encoding
+        if (encoding, kind) not in self._decoders:
+            self._decoders[encoding, kind] = _decoder(one)
+        decoder = self._decoders[encoding, kind]
+        if decoder is None:
             return
-        if kind not in self._decoders:
-            self._decoders[kind] = _decoder(one)
-        decoder = self._decoders[kind]
-        if decoder is not None:
-            self._contents.ahead = round(self._clocks.get(topic, 0.0) * 1e9)
-            take_message(self._contents, self._watch, (topic, kind), received, decoder(one.message.data))
+        message = decoder(one.message.data)
+        self._contents.ahead = round(self._clocks.get(topic, 0.0) * 1e9)
+        if encoding not in PLAIN:
+            take_message(self._contents, self._watch, (topic, kind), received, message)
+            return
+        if kind in FOXGLOVE:
+            take_foxglove(self._contents, topic, kind, received, message)
+        for event in self._watch.events(topic, message) if topic in self._watch.topics else ():
+            self._contents.found.text(topic, received, event)
 
 
 def _decoder(one: McapMessage) -> Decoder | None:
-    """Return the function that decodes messages of a channel of ROS 2; ``None`` for other encodings."""
-    schema = one.schema
-    if schema is None or one.channel.message_encoding != "cdr" or schema.encoding != "ros2msg":
+    """Return the function that decodes messages of a channel; ``None`` for encodings that are not read."""
+    schema, encoding = one.schema, one.channel.message_encoding
+    if encoding == "json":
+        return json.loads
+    if schema is None:
+        return None
+    if encoding == "protobuf" and schema.encoding == "protobuf":
+        return protobuf_decoder(schema.name, schema.data)
+    if encoding != "cdr" or schema.encoding not in ("ros2msg", "ros2idl"):
         return None
     try:
-        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+        from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
     except ImportError:
         raise UnreadableLog(NO_ROSBAGS) from None
     store = get_typestore(Stores.EMPTY)
-    store.register(get_types_from_msg(schema.data.decode(), schema.name))
+    text = schema.data.decode()
+    store.register(get_types_from_msg(text, schema.name) if schema.encoding == "ros2msg" else get_types_from_idl(text))
     return lambda data: store.deserialize_cdr(data, schema.name)

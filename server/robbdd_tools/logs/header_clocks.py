@@ -17,6 +17,12 @@ MIN_OFFSET = 1_000_000_000
 """Two clocks count as different if they differ by more than this (ns). Smaller differences may be delays."""
 MIN_DRIFT = 100_000_000
 """If the difference of two clocks changes by more than this (ns) during a log, it counts as a drift."""
+MIN_STEP = 20_000_000
+"""A clock that is set back by less than this (ns) is not noticed."""
+ORDERED = 20
+"""A source is ordered after this many messages in order."""
+FEW = 3
+"""After a step back, at least this many messages follow in order before the newest time is reached again."""
 EVERY = 50_000_000
 """Pairs of times are kept at intervals of at least this long (ns of reception)."""
 PARTS = 10
@@ -113,6 +119,15 @@ class HeaderClocks:
 
 
 @dataclass
+class _Step:
+    """Headers that went back by ``back`` from ``newest`` (ns), and how many messages have followed in order."""
+
+    newest: int
+    back: int
+    count: int = 1
+
+
+@dataclass
 class _Pairs:
     """Times of reception and of headers (ns) for a part of a source's messages, in the order of reception."""
 
@@ -121,11 +136,16 @@ class _Pairs:
     last: tuple[int, int] = (0, 0)
     jump: int = 0
     """By how much (ns) the clock of the headers jumped back; 0 if it never did."""
+    ordered: int = 0
+    """How many messages in a row had no earlier time than the one before."""
+    step: _Step | None = None
 
     def add(self, received: int, stamp: int) -> None:
         before, newest = self.last
         if received > before and newest - stamp > MIN_OFFSET:
             self.jump = max(self.jump, newest - stamp)
+        self._look_for_step(received > before, newest, stamp)
+        self.ordered = self.ordered + 1 if stamp >= newest else 0
         self.last = received, stamp
         if (
             not self.received
@@ -135,12 +155,29 @@ class _Pairs:
             self.received.append(received)
             self.stamps.append(stamp)
 
+    def _look_for_step(self, is_later: bool, newest: int, stamp: int) -> None:
+        """Find a clock that is set back: the messages of an ordered source go back once, and go on in order there.
+
+        A message that is late is a single one, or the source is not ordered.
+        """
+        if self.step is None:
+            if is_later and newest - stamp > MIN_STEP and self.ordered >= ORDERED:
+                self.step = _Step(newest, newest - stamp)
+        elif newest < stamp <= self.step.newest:
+            self.step.count += 1
+            if self.step.count == FEW:
+                self.jump, self.step = max(self.jump, self.step.back), None
+        else:
+            self.step = None
+
     def extend(self, received: Nanoseconds, stamps: Nanoseconds) -> None:
         """Add messages (n,): the same as ``add`` for each of them."""
-        before = np.concatenate([[self.last[0]], received[:-1]]), np.concatenate([[self.last[1]], stamps[:-1]])
-        back = (before[1] - stamps)[received > before[0]]
-        if len(back) and (jump := int(back.max())) > MIN_OFFSET:
-            self.jump = max(self.jump, jump)
+        before = np.concatenate([[self.last[1]], stamps[:-1]])
+        if self.step is not None or (stamps < before).any():
+            for one, stamp in zip(received.tolist(), stamps.tolist(), strict=True):
+                self.add(one, stamp)
+            return
+        self.ordered += len(stamps)
         self.last = int(received[-1]), int(stamps[-1])
         row = 0
         while row < len(received):

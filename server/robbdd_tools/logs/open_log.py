@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import sqlite3
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.logs.foxglove_mcap import encodings, is_uniform, read_foxglove
-from robbdd_tools.logs.growing_mcap import is_cut, read_mcap
+from robbdd_tools.logs.growing_mcap import is_cut, is_of_ros, read_mcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.log_files import METADATA, SUFFIXES, bag_files
 from robbdd_tools.logs.log_table import read_table
 from robbdd_tools.logs.ros_bag import read_ros_bag
+from robbdd_tools.logs.sqlite_wal import has_wal, without_wal
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.event_signals import EventSignal
@@ -31,24 +33,36 @@ def read_log(
 
     Raises ``UnreadableLog``.
     """
+    if has_wal(path):
+        return _with_wal(path, columns, clocks, signals)
     if path.is_dir():
         return _checked(path, _read_folder(path, clocks, signals))
     match path.suffix.lower():
         case ".csv":
             found = read_table(path, columns)
-        case ".mcap" if is_cut(path) or not is_uniform(path):
+        case ".mcap" if is_cut(path) or not is_of_ros(path):
             return _checked(path, read_mcap(path, clocks or {}, signals))
-        case ".mcap" if "json" in encodings(path):
-            found = read_foxglove(path, signals)
         case ".bag" | ".db3" | ".mcap":
             return _checked(path, read_ros_bag(path, clocks, signals))
         case _:
             raise UnreadableLog(f"{path} is no log: name a rosbag2 folder, or a file {', '.join(SUFFIXES)}")
-    if signals and path.suffix.lower() == ".csv":
+    if signals:
         raise UnreadableLog(f"{path} has no topics: name the events of a table in a column 'event'")
     if clocks:
-        raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for ROS bags only")
+        raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for bags only")
     return _checked(path, found)
+
+
+def _with_wal(
+    path: Path, columns: Mapping[str, str] | None, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]
+) -> LogContents:
+    try:
+        with without_wal(path) as copied:
+            found = read_log(copied, columns, clocks, signals)
+    except sqlite3.Error as error:
+        raise UnreadableLog(f"{path} cannot be read: {error}") from error
+    words = f"the recorder of {path.name} did not end: its last messages were read from the write-ahead log"
+    return replace(found, unfinished=True, remarks=(words, *found.remarks))
 
 
 def _read_folder(path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]) -> LogContents:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 NO_ROSBAGS = "reading ROS bags needs the extra 'logs': pip install 'robbdd-tools[logs]'"
 MAX_LISTED = 8
+ZSTD = b"\x28\xb5\x2f\xfd"
+"""Begin of compressed data."""
 
 
 def read_ros_bag(
@@ -61,6 +63,9 @@ def read_ros_bag(
             for connection, received, raw in reader.messages(connections=wanted) if wanted else ():
                 if connection.topic in batched and batches.add(connection.topic, received, raw):
                     continue
+                if raw[:4] == ZSTD:
+                    words = "its messages are compressed, as its metadata.yaml says: name the folder of the bag"
+                    raise UnreadableLog(words)
                 topic = f": '{connection.topic}' ({connection.msgtype})"
                 message = reader.deserialize(raw, connection.msgtype)
                 contents.ahead = ahead.get(connection.topic, 0)

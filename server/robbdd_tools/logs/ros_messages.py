@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.logs.pose_lists import Pose
 
 HOW_STAMPED = "messages are stamped by their headers, and those without one by their reception"
+MAX_LISTED = 4
 WORLD = "world"
 """Frame of the poses of a simulator."""
 
@@ -31,6 +32,8 @@ class RosContents:
         self.lists = PoseLists()
         self.goals = ActionGoals()
         self.remarks: list[str] = []
+        self.shapeless: dict[str, set[str]] = {}
+        """Topics of scenes, with the entities that have no place because they consist of none or several solids."""
         self.ahead = 0
         """The clock of the next messages' headers is ahead by this (ns)."""
         self._diagnostics = Diagnostics()
@@ -155,7 +158,10 @@ class RosContents:
         return replace(
             found,
             tracks={frame: track for frame, track in found.tracks.items() if not self.lists.ambiguous(frame)},
-            remarks=(HOW_STAMPED, *self.remarks, *found.remarks, *self.lists.remarks(), *self.goals.remarks),
+            remarks=(
+                *(HOW_STAMPED, *self.remarks, *found.remarks, *self.lists.remarks(), *self.goals.remarks),
+                *(_shapeless(topic, names) for topic, names in self.shapeless.items()),
+            ),
         )
 
     def _pose(self, topic: str, frame: str, received: int, header: Any, pose: Any) -> None:
@@ -237,6 +243,11 @@ def _detected_pose(one: Any) -> Any:
     best = max(one.results, key=lambda result: float(getattr(result, "hypothesis", result).score))
     place = best.pose.pose.position
     return best.pose.pose if any((place.x, place.y, place.z)) else one.bbox.center
+
+
+def _shapeless(topic: str, names: set[str]) -> str:
+    listed = ", ".join(f"'{name}'" for name in sorted(names)[:MAX_LISTED])
+    return f"entities on '{topic}' without exactly one solid have no place: {listed}{' …' * (len(names) > MAX_LISTED)}"
 
 
 def _stamp(stamp: Any) -> int:
