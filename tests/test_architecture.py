@@ -64,7 +64,7 @@ HOMES = {
     "shtab": {"commands"},
     "scipy": {"campaign"},
     "distributed": {"campaign"},
-    "duckdb": {"campaign"},
+    "duckdb": {"campaign", "logs"},
     "reqif": {"workbench"},
     "trimesh": {"world"},
     "collada": {"world"},

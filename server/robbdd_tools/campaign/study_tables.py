@@ -1,4 +1,4 @@
-"""Write the rows of a study as CSV, Parquet or a DuckDB database. No other module uses ``duckdb``."""
+"""Write the rows of a study as CSV, Parquet or a DuckDB database."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from robbdd_tools.base.files import uri_to_path
 
 METADATA = "metadata.yaml"
-SUFFIXES = (".bag", ".db3", ".mcap", ".csv")
+SUFFIXES = (".bag", ".db3", ".mcap", ".csv", ".parquet")
 
 
 def is_log(path: Path) -> bool:

@@ -1,4 +1,4 @@
-"""Read logs that are tables (CSV): one row for each time at which something was recorded.
+"""Read logs that are tables (CSV or Parquet): one row for each time at which something was recorded.
 
 The columns are ``time`` (s); for a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally ``qx``, ``qy``, ``qz``,
 ``qw`` and ``parent``; for an event ``event``. Every other column with numbers may be a joint (rad, or m for a sliding
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, UnreadableLog
+from robbdd_tools.logs.parquet_table import PARQUET, parquet_rows, parquet_titles
 from robbdd_tools.logs.table_columns import POSITION, TURN, Columns, columns_of
 from robbdd_tools.logs.track_builder import TrackBuilder
 
@@ -61,7 +62,7 @@ class Row:
 
 
 def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogContents:
-    """Return the contents of a CSV file. ``columns`` maps names of columns to titles in the file.
+    """Return the contents of a table. ``columns`` maps names of columns to titles in the file.
 
     Raises ``UnreadableLog`` with the line of a cell that is not a number.
     """
@@ -89,7 +90,7 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:
-    """Return the events of a CSV file. Their times count from the begin of the log, in s. Raises ``UnreadableLog``."""
+    """Return the events of a table. Their times count from the begin of the log, in s. Raises ``UnreadableLog``."""
     try:
         rows = [(row.number("time"), row.text("event")) for row in _rows(path, {}) if row.text("event")]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -100,6 +101,11 @@ def read_events(path: Path) -> tuple[TextStamp, ...]:
 
 
 def _rows(path: Path, stated: Mapping[str, str]) -> Iterator[Row]:
+    if path.suffix.lower() == PARQUET:
+        columns = columns_of(str(path), parquet_titles(path), stated)
+        for number, cells in enumerate(parquet_rows(path), 1):
+            yield Row(f"{path}, row {number}", cells, columns)
+        return
     with open_regular(path) as file:
         lines = (line.decode("utf-8-sig" if number == 0 else "utf-8") for number, line in enumerate(file))
         first = next(lines, "")

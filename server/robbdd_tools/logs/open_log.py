@@ -12,6 +12,7 @@ from robbdd_tools.logs.growing_mcap import is_cut, is_of_ros, read_mcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.log_files import METADATA, SUFFIXES, bag_files
 from robbdd_tools.logs.log_table import read_table
+from robbdd_tools.logs.parquet_table import PARQUET
 from robbdd_tools.logs.ros_bag import read_ros_bag
 from robbdd_tools.logs.sqlite_wal import has_wal, without_wal
 
@@ -38,7 +39,7 @@ def read_log(
     if path.is_dir():
         return _checked(path, _read_folder(path, clocks, signals))
     match path.suffix.lower():
-        case ".csv":
+        case ".csv" | ".parquet":
             found = read_table(path, columns)
         case ".mcap" if is_cut(path) or not is_of_ros(path):
             return _checked(path, read_mcap(path, clocks or {}, signals))
