@@ -13,7 +13,7 @@ import pytest
 
 from fork_kit import ROBBDD
 from kit import EXAMPLES
-from logs.bags import text, write
+from logs.bags import write
 from logs.drives import ONE, clauses, drive, robbdd, verdicts
 from logs.test_growing_mcap import in_chunks
 from robbdd_tools.agent.judge_log import verdict_on
@@ -129,12 +129,12 @@ def test_a_recording_that_stops_is_judged_after_a_silence(models: Path, tmp_path
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("drive", "cannot be followed: record with storage 'mcap' (ros2 bag record -s mcap)"),
+        ("table.csv", "cannot be followed: name the folder of a rosbag2, or an MCAP file"),
         ("empty.mcap", "has no message yet: start the recorder first, or wait longer (--follow SECONDS)"),
     ],
 )
 def test_what_cannot_be_followed_is_refused(name: str, words: str, models: Path, tmp_path: Path) -> None:
-    write(tmp_path / "drive", [text("pick-start", 1.0)])
+    (tmp_path / "table.csv").write_text("time,event\n1,pick-start\n", encoding="utf-8")
     (tmp_path / "empty.mcap").write_bytes(b"")
     done = robbdd(models, "judge", str(tmp_path / name), "pickplace.bdd", "--no-store", *ONE, "--follow", "0.5")
     assert done.returncode == 2

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from robbdd_tools.judging.scenario_clauses import clause_of, iteration_of, statement_of
 from robbdd_tools.logs.growing_mcap import GrowingMcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
-from robbdd_tools.logs.log_files import bag_files
 from robbdd_tools.monitor.time import After, Before, closing_time, occurrences
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, leaves_of
 from robbdd_tools.protocol.event_signals import read_event_signal
@@ -33,9 +32,11 @@ def growing_contents(request: LogRequest) -> Iterator[LogContents]:
     """Yield the contents of a log whenever it has grown, and finally the contents of the whole log.
 
     The log ends when the recorder has closed its file or has written nothing for ``request.quiet`` seconds. Raises
-    ``UnreadableLog``, also if the log is no MCAP file.
+    ``UnreadableLog``, also for logs of other kinds than MCAP and rosbag2.
     """
-    path = _file(Path(request.path))
+    path = Path(request.path)
+    if not path.is_dir() and path.suffix.lower() not in (".mcap", ".db3"):
+        raise UnreadableLog(f"{path} cannot be followed: name the folder of a rosbag2, or an MCAP file")
     log = GrowingMcap(path, request.clocks, tuple(map(read_event_signal, request.signals)))
     last = time.monotonic()
     while not log.complete and time.monotonic() - last < (request.quiet or 0.0):
@@ -82,13 +83,3 @@ def _is_past(constraint: TimeConstraint, trace: Trace) -> bool:
         return False
     closed = closing_time(constraint, trace)
     return closed is not None and closed + LATE <= trace.end
-
-
-def _file(path: Path) -> Path:
-    """Return the file of a log that grows. Raises ``UnreadableLog`` if it is no MCAP file."""
-    files = bag_files(path) if path.is_dir() else [path]
-    if len(files) != 1:
-        raise UnreadableLog(f"{path} has {len(files)} files: name the one that is recorded")
-    if files[0].suffix.lower() != ".mcap":
-        raise UnreadableLog(f"{files[0]} cannot be followed: record with storage 'mcap' (ros2 bag record -s mcap)")
-    return files[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping
 from copy import deepcopy
 from dataclasses import replace
@@ -11,14 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from mcap.reader import NonSeekingReader, make_reader
 
-from robbdd_tools.base.files import open_regular
+from robbdd_tools.base.files import load_text, open_regular
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.logs.event_watch import EventWatch
 from robbdd_tools.logs.foxglove_messages import FOXGLOVE, take_foxglove
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.mcap_records import MAGIC, McapMessage, McapRecords
 from robbdd_tools.logs.protobuf_decoding import protobuf_decoder
 from robbdd_tools.logs.ros_bag import NO_ROSBAGS, not_read, stated_clocks, take_message
+from robbdd_tools.logs.ros_definitions import known_types
 from robbdd_tools.logs.ros_messages import READERS, RosContents
+from robbdd_tools.logs.sqlite_records import SqliteRecords
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.event_signals import EventSignal
@@ -26,6 +30,7 @@ if TYPE_CHECKING:
 Decoder = Callable[[bytes], Any]
 OWN_TRACE = "robbdd-trace-1"
 """Encoding of the exact trace, which files of simulated runs contain."""
+_COUNT = re.compile(r"^  message_count: (\d+)\s*$", re.MULTILINE)
 ROS_PROFILE = "ros2"
 PLAIN = ("json", "protobuf")
 """Encodings of messages that become plain data."""
@@ -53,14 +58,21 @@ def is_of_ros(path: Path) -> bool:
         raise UnreadableLog(f"{path} cannot be read as MCAP: {error or type(error).__name__}") from error
 
 
-def read_mcap(path: Path, clocks: Mapping[str, float], signals: Iterable[EventSignal]) -> LogContents:
+def read_mcap(
+    path: Path,
+    clocks: Mapping[str, float],
+    signals: Iterable[EventSignal],
+    events: Iterable[tuple[int, str, str]] = (),
+) -> LogContents:
     """Return the contents of an MCAP file with messages of ROS 2, or of Foxglove in JSON or Protobuf, or both.
 
-    A file without an end is read up to its last complete record. Raises ``UnreadableLog``.
+    A file without an end is read up to its last complete record. ``events`` are further ones: the time of reception
+    (ns), a topic, and the event. Raises ``UnreadableLog``.
     """
     log = GrowingMcap(path, clocks, signals)
     if not is_cut(path):
         log.read_whole()
+        log.add(events)
         log.check()
         return log.contents()
     if not log.read():
@@ -74,11 +86,15 @@ def read_mcap(path: Path, clocks: Mapping[str, float], signals: Iterable[EventSi
 
 
 class GrowingMcap:
-    """The contents of an MCAP file with messages of ROS 2 or of Foxglove. ``read`` adds new messages."""
+    """The contents of a file with messages of ROS 2 or of Foxglove, or of a folder of such files.
+
+    The files are MCAP files, or SQLite files of a rosbag2. ``read`` adds new messages, and new files of the folder.
+    """
 
     def __init__(self, path: Path, clocks: Mapping[str, float], signals: Iterable[EventSignal]) -> None:
         self._path = path
-        self._records = McapRecords(path)
+        self._records: dict[Path, McapRecords | SqliteRecords] = {}
+        self._count = 0
         self._clocks = clocks
         self._contents, self._watch = RosContents(clocks), EventWatch(signals)
         self._decoders: dict[tuple[str, str], Decoder | None] = {}
@@ -86,8 +102,10 @@ class GrowingMcap:
 
     @property
     def complete(self) -> bool:
-        """Whether the recorder has written the end of the file."""
-        return self._records.complete
+        """Whether the recorder has written the end of the file, or the metadata of all messages of the folder."""
+        if self._path.is_dir():
+            return _recorded(self._path) == self._count
+        return all(one.complete for one in self._records.values()) and bool(self._records)
 
     @property
     def empty(self) -> bool:
@@ -96,11 +114,14 @@ class GrowingMcap:
 
     def read(self) -> bool:
         """Read the new messages, in the order of the file; return whether there were any. Raises ``UnreadableLog``."""
-        count = 0
-        for one in self._records.new_messages():
-            count += 1
-            self._take(one)
-        return count > 0
+        before = self._count
+        for path in _files(self._path) if self._path.is_dir() else [self._path]:
+            if path not in self._records:
+                self._records[path] = (SqliteRecords if path.suffix.lower() == ".db3" else McapRecords)(path)
+            for one in self._records[path].new_messages():
+                self._count += 1
+                self._take(one)
+        return self._count > before
 
     def read_whole(self) -> None:
         """Read a complete file in the order of reception, which is not always that of the file.
@@ -121,6 +142,11 @@ class GrowingMcap:
             raise
         except Exception as error:  # Damaged bytes raise exceptions of the decompressors, too.
             raise UnreadableLog(f"{self._path} cannot be read as MCAP: {error or type(error).__name__}") from error
+
+    def add(self, events: Iterable[tuple[int, str, str]]) -> None:
+        """Add events: the time of reception (ns), a topic, and the event."""
+        for received, topic, event in events:
+            self._contents.found.text(topic, received, event)
 
     def check(self) -> None:
         """Raise ``UnreadableLog`` if a topic that the user states has not occurred so far."""
@@ -170,6 +196,20 @@ class GrowingMcap:
             self._contents.found.text(topic, received, event)
 
 
+def _files(folder: Path) -> list[Path]:
+    """Return the files of a folder in the order in which a recorder makes them: ``drive_9``, ``drive_10`` …"""
+    files = [one for one in folder.iterdir() if one.suffix.lower() in (".mcap", ".db3") and one.is_file()]
+    numbers = {one: [int(part) for part in re.findall(r"\d+", one.stem)] for one in files}
+    return sorted(files, key=lambda one: (re.sub(r"\d+", "", one.stem), numbers[one], one.name))
+
+
+def _recorded(folder: Path) -> int | None:
+    """Return how many messages the folder of a rosbag2 has by its metadata; ``None`` if it does not say so yet."""
+    path = folder / "metadata.yaml"
+    found = _COUNT.search(load_text(path, RESULT_SIZE)) if path.is_file() else None
+    return None if found is None else int(found[1])
+
+
 def _decoder(one: McapMessage) -> Decoder | None:
     """Return the function that decodes messages of a channel; ``None`` for encodings that are not read."""
     schema, encoding = one.schema, one.channel.message_encoding
@@ -185,6 +225,9 @@ def _decoder(one: McapMessage) -> Decoder | None:
         from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
     except ImportError:
         raise UnreadableLog(NO_ROSBAGS) from None
+    if not schema.data:
+        known = known_types()
+        return (lambda data: known.deserialize_cdr(data, schema.name)) if schema.name in known.fielddefs else None
     store = get_typestore(Stores.EMPTY)
     text = schema.data.decode()
     store.register(get_types_from_msg(text, schema.name) if schema.encoding == "ros2msg" else get_types_from_idl(text))

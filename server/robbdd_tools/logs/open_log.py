@@ -12,12 +12,16 @@ from robbdd_tools.logs.growing_mcap import is_cut, is_of_ros, read_mcap
 from robbdd_tools.logs.log_contents import LogContents, UnreadableLog
 from robbdd_tools.logs.log_files import METADATA, SUFFIXES, bag_files
 from robbdd_tools.logs.log_table import read_table
+from robbdd_tools.logs.mcap_annotations import annotated, read_annotations
 from robbdd_tools.logs.parquet_table import PARQUET
 from robbdd_tools.logs.ros_bag import read_ros_bag
 from robbdd_tools.logs.sqlite_wal import has_wal, without_wal
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.event_signals import EventSignal
+
+ReceivedEvent = tuple[int, str, str]
+"""The time of reception (ns), a topic, and an event."""
 
 
 def read_log(
@@ -36,22 +40,34 @@ def read_log(
     """
     if has_wal(path):
         return _with_wal(path, columns, clocks, signals)
-    if path.is_dir():
-        return _checked(path, _read_folder(path, clocks, signals))
+    if not path.is_dir() and path.suffix.lower() in (".csv", PARQUET):
+        return _checked(path, _read_table(path, columns, clocks, signals))
+    files = bag_files(path) if path.is_dir() else [path]
+    found = read_annotations(one for one in files if one.suffix.lower() == ".mcap" and not is_cut(one))
+    contents = (_read_folder if path.is_dir() else _read_file)(path, clocks, signals, found.received)
+    return _checked(path, annotated(contents, found))
+
+
+def _read_file(
+    path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal], events: Sequence[ReceivedEvent]
+) -> LogContents:
     match path.suffix.lower():
-        case ".csv" | ".parquet":
-            found = read_table(path, columns)
         case ".mcap" if is_cut(path) or not is_of_ros(path):
-            return _checked(path, read_mcap(path, clocks or {}, signals))
+            return read_mcap(path, clocks or {}, signals, events)
         case ".bag" | ".db3" | ".mcap":
-            return _checked(path, read_ros_bag(path, clocks, signals))
+            return read_ros_bag(path, clocks, signals, events)
         case _:
             raise UnreadableLog(f"{path} is no log: name a rosbag2 folder, or a file {', '.join(SUFFIXES)}")
+
+
+def _read_table(
+    path: Path, columns: Mapping[str, str] | None, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]
+) -> LogContents:
     if signals:
         raise UnreadableLog(f"{path} has no topics: name the events of a table in a column 'event'")
     if clocks:
         raise UnreadableLog(f"{path} has one clock: clocks of topics can be stated for bags only")
-    return _checked(path, found)
+    return read_table(path, columns)
 
 
 def _with_wal(
@@ -66,7 +82,9 @@ def _with_wal(
     return replace(found, unfinished=True, remarks=(words, *found.remarks))
 
 
-def _read_folder(path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal]) -> LogContents:
+def _read_folder(
+    path: Path, clocks: Mapping[str, float] | None, signals: Sequence[EventSignal], events: Sequence[ReceivedEvent]
+) -> LogContents:
     """Return the contents of a rosbag2 folder.
 
     If the recording was interrupted, the folder has no metadata, and its last file has no end.
@@ -75,10 +93,10 @@ def _read_folder(path: Path, clocks: Mapping[str, float] | None, signals: Sequen
     if len(files) == 1 and files[0].suffix.lower() == ".mcap" and is_cut(files[0]):
         return read_mcap(files[0], clocks or {}, signals)
     if (path / METADATA).is_file():
-        return read_ros_bag(path, clocks, signals)
+        return read_ros_bag(path, clocks, signals, events)
     if len(files) != 1:
         raise UnreadableLog(f"{path} has no {METADATA} and several files: write it with 'ros2 bag reindex {path.name}'")
-    return read_ros_bag(files[0], clocks, signals)
+    return read_ros_bag(files[0], clocks, signals, events)
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:

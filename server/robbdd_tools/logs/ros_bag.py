@@ -24,11 +24,15 @@ ZSTD = b"\x28\xb5\x2f\xfd"
 
 
 def read_ros_bag(
-    path: Path, clocks: Mapping[str, float] | None = None, signals: Iterable[EventSignal] = ()
+    path: Path,
+    clocks: Mapping[str, float] | None = None,
+    signals: Iterable[EventSignal] = (),
+    events: Iterable[tuple[int, str, str]] = (),
 ) -> LogContents:
     """Return the contents of a bag.
 
-    ``signals`` define which messages, of any type, report events. An event has the time of reception.
+    ``events`` are further ones: the time of reception (ns), a topic, and the event. ``signals`` define which messages,
+    of any type, report events. An event has the time of reception.
 
     The time of a pose is the time in its message's header. Without a header, it is the time of reception. If the two
     clocks differ, the time of reception is moved by the median difference, and a remark says so. ``clocks`` maps topics
@@ -72,6 +76,8 @@ def read_ros_bag(
                 take_message(contents, watch, (connection.topic, connection.msgtype), received, message)
                 topic = ""
             batches.finish()
+        for received, source, event in events:
+            contents.found.text(source, received, event)
         contents.remarks += watch.remarks
         return contents.finish()
     except UnreadableLog as error:
