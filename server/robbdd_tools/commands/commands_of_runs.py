@@ -98,6 +98,7 @@ def _add_judge(commands: AddsCommands) -> argparse.ArgumentParser:
 def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
     compare = commands.add_parser("compare", help="decide whether a run or a study is worse than another one")
     text = f"{RUN}; the results file of `robbdd run --json`; or a study with results, FILE.study[:FACTOR=LEVEL,…]"
+    text += "; or a folder of logs of real robots"
     compare.add_argument("before", metavar="BEFORE", help=text)
     compare.add_argument("after", metavar="AFTER", help="as BEFORE")
     compare.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the runs' project")

@@ -24,6 +24,7 @@ from robbdd_tools.campaign.comparison_text import (
     table,
 )
 from robbdd_tools.campaign.gate import parse_gate
+from robbdd_tools.campaign.log_sources import is_log_folder, log_source
 from robbdd_tools.campaign.report_moments import Moments
 from robbdd_tools.campaign.run_comparison import ComparisonOptions, Decision, compare_results
 from robbdd_tools.campaign.run_sources import run_source
@@ -80,7 +81,7 @@ def compare(options: CompareOptions) -> int:
 
 def _compare(options: CompareOptions) -> int:
     gate = parse_gate(options.gates)
-    before, after = (run_source(word, options.path, options.store) for word in (options.before, options.after))
+    before, after = (_source(word, options) for word in (options.before, options.after))
     before, after, differing = aligned(before, after)
     found = compare_results(
         before.results, after.results, ComparisonOptions(gate, options.level, by_margin=options.by_margin)
@@ -121,6 +122,12 @@ def _compare(options: CompareOptions) -> int:
             flips = flips_of(changes, (sides[0], sides[1]), moments)
         replace_file(options.html, comparison_page(title, found, notes, flips, len(changes), moments))
     return CODES[found.decision]
+
+
+def _source(word: str, options: CompareOptions) -> RunSource:
+    if is_log_folder(word):
+        return log_source(word, options.path)
+    return run_source(word, options.path, options.store)
 
 
 def _listed(before: RunSource, after: RunSource) -> Comparison | None:

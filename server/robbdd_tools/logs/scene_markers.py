@@ -5,11 +5,16 @@ from __future__ import annotations
 import base64
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
 Vector = Sequence[float]
+Mesh = Mapping[str, Mapping[str, Any]]
+"""``vertices`` and ``faces`` of a mesh, each an array as JSON."""
 MARKERS = "/markers"
 CUBE, SPHERE, CYLINDER, TEXT, TRIANGLES = 1, 2, 3, 9, 11
 """Types of ``visualization_msgs/msg/Marker``."""
@@ -70,7 +75,7 @@ def event_marker(event: str, frame: str) -> Drawn:
     return Drawn(frame, "events", TEXT, place, UPRIGHT, scale, TEXT_COLOR, text=text, seconds=TEXT_SECONDS)
 
 
-def _shape(shape: Mapping[str, Any], place: Any, meshes: Sequence[Mapping[str, Mapping[str, Any]]]) -> Iterator[Drawn]:
+def _shape(shape: Mapping[str, Any], place: FloatArray, meshes: Sequence[Mesh]) -> Iterator[Drawn]:
     """Yield the markers of a shape. Its sizes are those of the engine: half edges, radius and half length."""
     frame, turn, color = frame_name(shape["body"]), shape["orientation"], shape["color"]
     a, b, c = shape["size"]
@@ -95,7 +100,7 @@ def _shape(shape: Mapping[str, Any], place: Any, meshes: Sequence[Mapping[str, M
         case "plane":
             yield one(CUBE, (2 * a or GROUND, 2 * b or GROUND, THIN), (0.0, 0.0, -THIN / 2))
         case _:
-            corners = _corners(meshes[shape["mesh"]])
+            corners = _corners(meshes[cast("int", shape["mesh"])])
             yield one(TRIANGLES, (1.0, 1.0, 1.0), points=corners)
 
 
@@ -105,7 +110,7 @@ def turned(turn: Vector, vector: Vector) -> Any:
     return np.array(vector) + 2 * np.cross(axis, np.cross(axis, vector) + w * np.array(vector))
 
 
-def _corners(mesh: Mapping[str, Mapping[str, Any]]) -> Sequence[Vector]:
+def _corners(mesh: Mesh) -> Sequence[Vector]:
     """Return the corners of a mesh's triangles, three for each."""
     vertices = np.frombuffer(base64.b64decode(mesh["vertices"]["data"]), "<f4").reshape(-1, 3)
     faces = np.frombuffer(base64.b64decode(mesh["faces"]["data"]), "<u4")

@@ -35,12 +35,14 @@ class NamedLog:
     - ``path``: the file or folder.
     - ``selection``: selects the scenario that the robot executed.
     - ``names``: the meaning of the names in the log.
+    - ``place``: where the log is declared, as the begin of a message.
     """
 
     execution: str
     path: Path
     selection: Selection
     names: LogNames
+    place: str = ""
 
 
 def named_logs(model: Model, selection: Selection, stated: LogNames) -> list[NamedLog]:
@@ -49,13 +51,21 @@ def named_logs(model: Model, selection: Selection, stated: LogNames) -> list[Nam
     ``stated`` has what the user states in addition; it takes precedence. Raises ``NoNamedLog``, and ``ModelErrors``
     if the model has errors.
     """
-    found = list(_named_logs(model, selection, stated))
+    found = every_named_log(model, selection, stated)
+    for one in found:
+        if not is_log(one.path):
+            raise NoNamedLog(f"{one.place}there is no log at {one.path}: record one there, or change 'path:'")
     if not found:
         raise NoNamedLog(
             f"no selected execution of {model.path} names a log: write 'log: <NAME>' in a 'Scenario Exec', "
             "or name the log: robbdd judge LOG FILE"
         )
     return found
+
+
+def every_named_log(model: Model, selection: Selection, stated: LogNames) -> list[NamedLog]:
+    """Return the logs that the selected executions name, as ``named_logs``, also those that do not exist."""
+    return list(_named_logs(model, selection, stated))
 
 
 def _named_logs(model: Model, selection: Selection, stated: LogNames) -> Iterator[NamedLog]:
@@ -66,11 +76,9 @@ def _named_logs(model: Model, selection: Selection, stated: LogNames) -> Iterato
             if log is None or not _is_selected(acceptance, execution, selection.names):
                 continue
             path = _path_of(log, log.path)
-            if not is_log(path):
-                raise NoNamedLog(f"{_place(log)}there is no log at {path}: record one there, or change 'path:'")
             name = acceptance.curie(execution.iri)
             chosen = replace(selection, names=(name,), is_wanted=_executed(acceptance, log, selection.is_wanted))
-            yield NamedLog(name, path, chosen, merged(acceptance, log, stated))
+            yield NamedLog(name, path, chosen, merged(acceptance, log, stated), _place(log))
 
 
 def names_for(model: Model, spec: ScenarioSpec, stated: LogNames) -> LogNames:
