@@ -259,7 +259,7 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   labels(
     PROPERTY,
     ...["bhv action", "answer within", "ros topic", "type", "update-rate", "provider", "horizon", "observations", "evaluator"],
-    ...["less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
+    ...["certain beyond", "less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
     ...["variant", "scene inst", "bhv", "policies", "repeat", "seed", "timeout", "noise", "latency", "module", "attr"],
     ...["path", "frames", "base frames", "world frame", "joint topics", "events", "grips", "annotations", "uncertainty", "log"],
   ),

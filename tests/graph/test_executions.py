@@ -21,7 +21,7 @@ import "bench.scenex"
 ns x = 'https://example.org/x/'
 bhv impl (ns=x) own { py { module: my.arm, attr: Pick } }
 obs provider (ns=x) truth { simulation ground truth update-rate: 100 Hz noise: 2 mm latency: 0.05 s }
-obs provider (ns=x) poses { ros topic: "/poses" type: "geometry_msgs/msg/PoseArray" }
+obs provider (ns=x) poses { ros topic: "/poses" type: "geometry_msgs/msg/PoseArray" noise: 5 mm }
 observation (ns=x) part-pose { provider: <truth> observes var <fetch.part> observes obj <furniture.tray> }
 observation (ns=x) seen-pose {
     provider: <poses>
@@ -29,7 +29,7 @@ observation (ns=x) seen-pose {
     time extractor: py { module: my.ros, attr: stamp }
     entity mapper: string { "b" to obj <parts.bolt> }
 }
-obs policy (ns=x) near for <fetch.on-bench> horizon: 2.0 seconds {
+obs policy (ns=x) near for <fetch.on-bench> horizon: 2.0 seconds certain beyond: 3 sigma {
     observations: { <part-pose>, <seen-pose> }
     evaluator: linear distance { between: 10 mm and 0.05 m max time offset: 0.1 s }
 }
@@ -65,7 +65,7 @@ TRUTH = Provider(X + "truth", "ground-truth", 100.0, 0.002, 0.05)
 PART = Observation(X + "part-pose", TRUTH, (T + "var-part", ENV + "tray"))
 SEEN = Observation(
     X + "seen-pose",
-    Provider(X + "poses", "topic", source="/poses", type="geometry_msgs/msg/PoseArray"),
+    Provider(X + "poses", "topic", noise=0.005, source="/poses", type="geometry_msgs/msg/PoseArray"),
     (ENV + "bolt",),
     time_extractor="my.ros:stamp",
     mapped=(("b", ENV + "bolt"),),
@@ -73,7 +73,7 @@ SEEN = Observation(
 CLAUSE = T + "on-bench"
 POLICIES = (
     Policy(X + "told", CLAUSE, Rule("topic", "/seen")),
-    Policy(X + "near", CLAUSE, Rule("distance", "", "between", (0.01, 0.05), 0.1), 2.0, (PART, SEEN)),
+    Policy(X + "near", CLAUSE, Rule("distance", "", "between", (0.01, 0.05), 0.1), 2.0, (PART, SEEN), sigma=3.0),
     Policy(X + "coded", CLAUSE, Rule("python", "my.rules:near"), None, (PART,)),
 )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from judging.judged_policies import CLAUSE, NEAR, SENTENCE, STATED, TRUTH, as_ju
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.decisions import decide
-from robbdd_tools.monitor.policy import Observation, Provider, Rule
+from robbdd_tools.judging.policies import noise_of
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.clauses import Fluent, Junction, fluents_of
@@ -236,3 +238,75 @@ def test_the_samples_of_a_log_are_the_observations() -> None:
     assert (
         judged(spec_of(provider=elsewhere), replace(moving([0.2, 0.6]), log="drive.mcap")).outcome is Outcome.VIOLATED
     )
+
+
+MM = 0.001
+NOISY = replace(TRUTH, noise=2 * MM)
+
+
+@pytest.mark.parametrize(
+    ("sigma", "bound", "outcome"),
+    [
+        # The distance is 0.3 m; its standard deviation is 2 mm · √2 = 2.83 mm.
+        (None, 0.3001, Outcome.HOLDS),
+        (3.0, 0.3001, Outcome.UNKNOWN),
+        (3.0, 0.3084, Outcome.UNKNOWN),
+        (3.0, 0.3086, Outcome.HOLDS),
+        (3.0, 0.2999, Outcome.UNKNOWN),
+        (3.0, 0.2916, Outcome.UNKNOWN),
+        (3.0, 0.2914, Outcome.VIOLATED),
+        (1.0, 0.3027, Outcome.UNKNOWN),
+        (1.0, 0.3029, Outcome.HOLDS),
+    ],
+)
+def test_a_margin_within_the_stated_noise_decides_nothing(sigma: float | None, bound: float, outcome: Outcome) -> None:
+    spec = spec_of(Rule("distance", form="less-than", bounds=(bound,)), NOISY)
+    # A log's positions are the measured ones: no noise is added to them.
+    found = judged(with_sigma(spec, sigma), replace(moving([0.3, 0.3]), log="drive"))
+    assert found.outcome is outcome, found.reason
+    assert ("is within the uncertainty of the measurements, ±" in found.reason) == (outcome is Outcome.UNKNOWN)
+
+
+def with_sigma(spec: ScenarioSpec, sigma: float | None) -> ScenarioSpec:
+    assert spec.execution is not None
+    (policy,) = spec.execution.policies
+    return replace(spec, execution=replace(spec.execution, policies=(replace(policy, sigma=sigma),)))
+
+
+def test_certain_verdicts_are_as_rarely_wrong_as_the_number_of_deviations_says() -> None:
+    """A Monte Carlo oracle of its own: measured distances of noisy points, and the share of wrong certain verdicts."""
+    draws = np.random.default_rng(7).normal(0.0, 2 * MM, (200_000, 2, 3))
+    measured = np.linalg.norm(np.array([0.3, 0.0, 0.0]) + draws[:, 0] - draws[:, 1], axis=1)
+    for sigma, wrong in ((1.0, 0.1587), (2.0, 0.0228), (3.0, 0.00135)):
+        limit = noise_of(policy_of(with_sigma(spec_of(provider=NOISY), sigma)))
+        assert limit == pytest.approx(sigma * float(measured.std()), rel=0.01)
+        # A true margin of zero: the verdict is certain, and wrong, if the measured one exceeds the limit.
+        assert np.mean(measured - 0.3 > limit) == pytest.approx(wrong, rel=0.15, abs=2e-4)
+
+
+def policy_of(spec: ScenarioSpec) -> Policy:
+    assert spec.execution is not None
+    return spec.execution.policies[0]
+
+
+def test_simulated_sensors_decide_as_often_as_the_noise_allows() -> None:
+    """The simulated noise is that of the limit: of many seeds, the share of undecided verdicts is the oracle's."""
+    margin, sigma = 4 * MM, 2.0
+    spec = with_sigma(spec_of(Rule("distance", form="less-than", bounds=(0.3 + margin,)), NOISY), sigma)
+    outcomes = [judged(replace(spec, seed=seed), moving([0.3])).outcome for seed in range(400)]
+    draws = np.random.default_rng(3).normal(0.0, 2 * MM, (100_000, 2, 3))
+    measured = margin + 0.3 - np.linalg.norm(np.array([0.3, 0.0, 0.0]) + draws[:, 0] - draws[:, 1], axis=1)
+    limit = sigma * 2 * MM * 2**0.5
+    expected = float(np.count_nonzero(np.abs(measured) < limit)) / len(measured)
+    undecided = outcomes.count(Outcome.UNKNOWN) / len(outcomes)
+    # Four standard deviations of a share of 400.
+    assert abs(undecided - expected) < 4 * (expected * (1 - expected) / 400) ** 0.5
+
+
+def test_users_code_on_noisy_observations_has_an_unknown_error(tmp_path: Path) -> None:
+    (tmp_path / "noisy_rules.py").write_text("def near(evidence, arguments):\n    return 1.0\n", encoding="utf-8")
+    spec = spec_of(Rule("python", "noisy_rules:near"), NOISY, model=str(tmp_path / "a.bddx"))
+    assert judged(spec, moving([0.3])).outcome is Outcome.HOLDS
+    found = judged(with_sigma(spec, 3.0), moving([0.3]))
+    assert found.outcome is Outcome.UNKNOWN
+    assert "cannot be computed from the uncertainty of the measurements" in found.reason

@@ -201,11 +201,10 @@ class Predicate:
     - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
     - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.
     - ``evaluate``: the evaluator; ``None`` if this installation has none. Then clauses are *unknown*, and never pass.
-    - ``quantities``: what the evaluator needs besides poses and grips (``reach``); they are only sampled in its
-      windows.
+    - ``quantities``: what the evaluator needs besides poses and grips (``reach``), sampled in its windows only.
     - ``duration``: judges the time between the events of ``from … until …``; ``evaluate`` is then only for plots.
     - ``set_up``: true if the predicate is set up before the scenario, or stated by the model, instead of observed.
-    - ``measured``: how errors of poses change the margin: like a length between two positions, an angle, a speed …
+    - ``measured``: how errors of poses change the margin: as a length, …; ``error``: error of its own observations, SI.
     - ``synonyms``: wrong words that users write for it; the error message then names the predicate.
     - ``in_texts``: forms for the text of a ``pred("…")`` only; as phrases they are about other kinds of elements.
     - ``pointwise``: true if the margin at a sample depends only on it and the one before; windows may then be divided.
@@ -228,6 +227,7 @@ class Predicate:
     synonyms: tuple[str, ...] = ()
     in_texts: tuple[str, ...] = ()
     pointwise: bool = False
+    error: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,6 +58,8 @@ _SPEED = _Quantity("a speed limit", above=True)
 _WHOLE_TURN = {"deg": 360.0, "rad": 2 * pi}
 _REPEAT = _Quantity("the number of repetitions", low=1.0, whole=True)
 _SEED = _Quantity("a seed", high=setting_of("seed").high, whole=True)
+_NOISE = _Quantity("noise")
+_SIGMA = _Quantity("a number of standard deviations", above=True)
 _EDGE = _Quantity("an edge of a box", above=True)
 _TIMEOUT = _Quantity("a timeout", above=True)
 _Measured = tuple[tree.Number | None, _Quantity]
@@ -97,14 +99,18 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
         case tree.PairFriction():
             yield node.value, _FRICTION
         case tree.Policy():
-            yield node.horizon, _Quantity("a horizon")
+            yield from ((node.horizon, _Quantity("a horizon")), (node.sigma, _SIGMA))
         case tree.GroundTruth():
-            yield from ((node.rate, _RATE), (node.noise, _Quantity("noise")), (node.latency, _Quantity("a latency")))
+            yield from ((node.rate, _RATE), (node.noise, _NOISE), (node.latency, _Quantity("a latency")))
         case tree.Camera():
             yield node.rate, _RATE
             yield node.fov, _Quantity("a field of view", high=_WHOLE_TURN[node.fov_unit], above=True)
             yield from ((number, _PIXELS) for number in _numbers(node.resolution))
-        case tree.SimulatedStates() | tree.Transforms() | tree.Sensor():
+        case tree.RosTopic():
+            yield node.noise, _NOISE
+        case tree.Transforms():
+            yield from ((node.rate, _RATE), (node.noise, _NOISE))
+        case tree.SimulatedStates() | tree.Sensor():
             yield node.rate, _RATE
         case tree.Inertia():
             yield node.mass, _Quantity("a mass")

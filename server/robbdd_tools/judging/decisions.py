@@ -162,7 +162,7 @@ def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) 
     if fluent.condition is not None and instance.condition is not None:
         condition = fluent.condition.predicate, instance.condition
     try:
-        judged = certain if trace.uncertain else judge
+        judged = certain if trace.uncertain or fluent.predicate.error else judge
         return judged(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
     except SettingError as error:
         return unknown(str(error), Cause.UNOBSERVED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
@@ -56,7 +57,18 @@ def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint
 def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any]) -> Predicate:
     judge = Judge(policy, spec, arguments)
     unit = "m" if policy.rule.kind == "distance" else ""
-    return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins, measured=MEASURED[policy.rule.kind])
+    measured, error = MEASURED[policy.rule.kind], noise_of(policy)
+    return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins, measured=measured, error=error)
+
+
+def noise_of(policy: Policy) -> float:
+    """Return the error (m) that a distance between the observed elements exceeds only with a stated improbability.
+
+    It is ``sigma`` times the standard deviation of the distance between two positions with independent noise on each
+    axis: to first order, the root of the sum of both variances. It is 0 if the policy states no ``sigma``.
+    """
+    each = [one.provider.noise for one in policy.observations for _ in one.targets]
+    return (policy.sigma or 0.0) * math.hypot(*each)
 
 
 @dataclass(frozen=True, slots=True)

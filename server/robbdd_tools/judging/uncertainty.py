@@ -117,6 +117,8 @@ def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: 
     A length changes by at most the sum of the errors of two positions. If the predicate names fewer than two elements,
     the largest error of any element counts for the missing ones.
     """
+    if not trace.uncertain and not predicate.error:
+        return 0.0
     match predicate.measured:
         case "nothing":
             return 0.0
@@ -126,7 +128,7 @@ def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: 
         case "angle" | "speed" as kind:
             return trace.uncertain.get(kind, f"the uncertainty of {EXAMPLES[kind]}")
         case "length":
-            return _length(predicate, arguments, trace, regions)
+            return _length(predicate, arguments, trace, regions) + predicate.error
 
 
 def _length(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float:

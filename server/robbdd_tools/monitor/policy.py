@@ -15,7 +15,7 @@ class Provider:
 
     - ``kind``: ``ground-truth``, ``entity-state``, ``transforms`` or ``topic``.
     - ``rate``: the rate of observations in Hz.
-    - ``noise``: the standard deviation of a position on each axis in m, for ground truth.
+    - ``noise``: the standard deviation of a position on each axis in m.
     - ``latency``: the age of an observation in s, for ground truth.
     - ``source``: the topic or the reference frame.
     - ``type``: the message type of the topic.
@@ -67,6 +67,9 @@ class Rule:
 class Policy:
     """The rule that judges a clause, and its observations. ``horizon`` is in s; ``None`` if not given.
 
+    A verdict is only certain if its margin exceeds the noise of the observations ``sigma`` times; ``None`` if
+    observations count as exact.
+
     ``origin`` is the source position of the policy, ``file:line:column``; empty for a graph without source text.
     """
 
@@ -76,3 +79,4 @@ class Policy:
     horizon: float | None = None
     observations: tuple[Observation, ...] = ()
     origin: str = ""
+    sigma: float | None = None

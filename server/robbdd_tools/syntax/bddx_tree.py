@@ -55,10 +55,12 @@ class Implementation(Node):
 
 @dataclass(frozen=True, slots=True)
 class RosTopic(Node):
-    """``ros topic: "/name" type: "pkg/msg/Type"``."""
+    """``ros topic: "/name" type: "pkg/msg/Type" [noise: … unit]``; ``noise`` as in ``GroundTruth``."""
 
     topic: Text
     type: Text
+    noise: Number | None
+    noise_unit: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +72,12 @@ class SimulatedStates(Node):
 
 @dataclass(frozen=True, slots=True)
 class Transforms(Node):
-    """``ros transform listener reference-frame: "…" update-rate: … Hz``."""
+    """``ros transform listener reference-frame: "…" update-rate: … Hz [noise: … unit]``."""
 
     frame: Text
     rate: Number
+    noise: Number | None
+    noise_unit: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,12 +192,13 @@ class Evaluation(Node):
 
 @dataclass(frozen=True, slots=True)
 class Policy(Node):
-    """``obs policy (ns=…) name for <fluent> [horizon: … seconds] { … }``."""
+    """``obs policy (ns=…) name for <fluent> [horizon: … seconds] [certain beyond: … sigma] { … }``."""
 
     namespace: NamespaceArgument
     name: Name
     fluent: Ref
     horizon: Number | None
+    sigma: Number | None
     rule: TrinaryTopic | Evaluation
 
 

@@ -93,7 +93,8 @@ def _policy(records: Records, node: Iri, places: Places) -> Iterator[Policy]:
     named = records.iris(records.ordered(node, "rbw:observation", "rbw:observation-list"))
     observations = tuple(observation for iri in named for observation in _observation(records, iri))
     horizon, origin = number(records, node, "time:horizon-seconds"), places(node)
-    yield Policy(node, clause, rule, horizon, observations, "" if origin is None else str(origin))
+    sigma = number(records, node, "rbw:certain-beyond-sigma")
+    yield Policy(node, clause, rule, horizon, observations, "" if origin is None else str(origin), sigma)
 
 
 def _rule(records: Records, node: Iri) -> Rule:

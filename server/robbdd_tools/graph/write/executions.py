@@ -101,19 +101,20 @@ def _add_provider(frame: Frame, root: tree.Provider) -> None:
     match source:
         case tree.GroundTruth():
             frame.sink.add_types(node, ["rbw:GroundTruth"], place)
-            _number(frame, node, "rbw:noise-metres", source.noise, LENGTHS.get(source.noise_unit or "m", 1.0))
             _number(frame, node, "rbw:latency-seconds", source.latency)
         case tree.RosTopic():
             frame.sink.add_types(node, ["rbw:RosTopic"], place)
             _say(frame, node, "rbw:ros-name", source.topic.value, source.topic)
             _say(frame, node, "rbw:message-type", source.type.value, source.type)
-            return
         case tree.Transforms():
             frame.sink.add_types(node, ["rbw:RosTransforms"], place)
             _say(frame, node, "rbw:ros-name", source.frame.value, source.frame)
         case tree.SimulatedStates():
             frame.sink.add_types(node, ["rbw:RosEntityStates"], place)
-    _number(frame, node, "rbw:rate-hertz", source.rate)
+    if not isinstance(source, tree.SimulatedStates):
+        _number(frame, node, "rbw:noise-metres", source.noise, LENGTHS.get(source.noise_unit or "m", 1.0))
+    if not isinstance(source, tree.RosTopic):
+        _number(frame, node, "rbw:rate-hertz", source.rate)
 
 
 def _add_observation(frame: Frame, root: tree.Observation) -> None:
@@ -158,6 +159,7 @@ def _add_policy(frame: Frame, root: tree.Policy) -> None:
     sink.add_types(node, ["obs:ObservationPolicy"], frame.at(root.name))
     sink.add(node, "bdd:of-clause", frame.target(root.fluent), frame.at(root.fluent))
     _number(frame, node, "time:horizon-seconds", root.horizon)
+    _number(frame, node, "rbw:certain-beyond-sigma", root.sigma)
     if isinstance(root.rule, tree.TrinaryTopic):
         sink.add_types(node, ["rbw:TrinaryTopic"], frame.at(root.name))
         _say(frame, node, "rbw:ros-name", root.rule.topic.value, root.rule.topic)
