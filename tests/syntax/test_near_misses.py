@@ -46,6 +46,11 @@ def changed(old: str, new: str) -> str:
         (changed("after <place-end>", "after place-end"), "place-end", "names must be in angle brackets"),
         (changed("after <place-end>", "after last <place-end>"), "last", "write 'the' before it"),
         (changed("after <place-end>", "after event <place-end>"), "event", "leave out 'event' here"),
+        (
+            changed("0.5 seconds after", "at some time within 0.5 seconds after"),
+            "within",
+            "'within … seconds after' already means at some time: leave out 'at some time'",
+        ),
         (changed("0.5 seconds after", "0.5 s after"), "s", "write the unit as 'seconds'"),
         (changed("task: <task>", "task: <task>;"), ";", "no line ends with ';'"),
         (changed("task: <task>", "task = <task>"), "=", "write ':' instead of '='"),
@@ -106,6 +111,11 @@ def test_a_near_miss_is_one_error_that_says_what_to_write(text: str, blamed: str
 )
 def test_a_near_miss_with_a_certain_fix_is_fixed(text: str) -> None:
     assert fixed(text, "syntax") == MODEL
+
+
+def test_at_some_time_before_within_is_removed() -> None:
+    within = MODEL.replace("0.5 seconds after", "within 0.5 seconds after", 1)
+    assert fixed(within.replace("within 0.5", "at some time within 0.5", 1), "syntax") == within
 
 
 def test_a_set_given_to_a_var_is_fixed_by_set_var() -> None:

@@ -39,6 +39,10 @@ def _as_set(before: re.Match[str]) -> SyntaxFix:
     return SyntaxFix(Span(before.start("var"), before.start("var")), "set ")
 
 
+def _without_words(before: re.Match[str]) -> SyntaxFix:
+    return SyntaxFix(Span(before.start(), before.end()), "")
+
+
 _OWN_PREDICATE = """the language has no such predicate: write 'pred("{x} is …", x=<variable>)', \
 which a policy or a step function judges"""
 _CORRECT = "the language has no such predicate: write '<workspace> is correct for <object>'"
@@ -63,6 +67,12 @@ _NEAR_MISSES = (
         r"\{",
         "'var' takes one value in each scenario: use 'set var' for a variable whose value is a set",
         rewrite=_as_set,
+    ),
+    NearMiss(
+        r"\bat\s+some\s+time\s+\Z",
+        r"within\b",
+        "'within … seconds after' already means at some time: leave out 'at some time'",
+        rewrite=_without_words,
     ),
     NearMiss(r"\bvar\s+\Z", _NAME, "variables are declared before 'Given:': move it there", ":"),
     NearMiss(r"\bset\s+\Z", r"var\b", "variables are declared before 'Given:': move it there", ":"),
