@@ -62,7 +62,7 @@ test("options are sent as they are set, and remembered for their workspace folde
 
 test("the extent of the run is shown with the options, or why there would be none", async () => {
   open();
-  const shown = () => editor.lists.at(-1)?.[0]?.detail;
+  const shown = () => editor.titles.at(-1)?.replace(/^Run with Options: /, "");
   await run(MODEL, ["Repetitions"], ["3"]);
   assert.deepEqual(estimated, [{ uri: MODEL.toString() }, { uri: MODEL.toString(), repeat: 3 }]);
   assert.equal(shown(), "4 executions, about 3 s");

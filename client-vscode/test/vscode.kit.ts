@@ -324,8 +324,8 @@ class QuickPick {
 
   show(): void {
     this.activeItems = this.items.slice(0, 1);
-    editor.titles.push(this.title);
     setImmediate(() => {
+      editor.titles.push(this.title);
       editor.lists.push(this.items);
       const end = editor.choices.shift();
       this.selectedItems = this.items.filter(({ label }) => end !== undefined && label.endsWith(end)).slice(0, 1);

@@ -39,13 +39,13 @@ export class RunOptionsChooser {
 
 /**
  * Ask which option to change, or whether to run; undefined if the user cancels. How many executions a run has and how long
- * they take, or why there would be none, is shown when the server's answer is there: a large model needs some time.
+ * they take, or why there would be none, is in the title when the server's answer is there: a large model needs some time.
  */
 function ask(options: RunOptions, estimate: Promise<unknown> | undefined): Promise<Entry | undefined> {
   const list = vscode.window.createQuickPick<Entry>();
   list.title = TITLE;
   list.placeholder = "Enter runs; choose an option to change it";
-  list.items = entries(options, undefined);
+  list.items = entries(options);
   list.busy = estimate !== undefined;
   return new Promise((resolve) => {
     let isOpen = true;
@@ -61,9 +61,9 @@ function ask(options: RunOptions, estimate: Promise<unknown> | undefined): Promi
     list.show();
     void estimate?.then((answer) => {
       if (isOpen) {
-        const active = list.activeItems[0]?.action;
-        list.items = entries(options, extentIn(answer));
-        list.activeItems = list.items.filter(({ action }) => action === active);
+        // Not at an entry: the editor would choose the first one again, whichever the user has reached.
+        const extent = extentIn(answer);
+        list.title = extent === undefined ? TITLE : `${TITLE}: ${extent}`;
         list.busy = false;
       }
     });
@@ -74,11 +74,11 @@ function folderOf(model: vscode.Uri): string {
   return vscode.workspace.getWorkspaceFolder(model)?.uri.toString() ?? "";
 }
 
-function entries(options: RunOptions, extent: string | undefined): Entry[] {
+function entries(options: RunOptions): Entry[] {
   const summary = summaryOf(options);
   const option = (label: string, action: OptionName): Entry => ({ label, description: withoutIcons(wordsOf(options, action)), action });
   return [
-    { label: "$(play) Run", description: withoutIcons(summary), ...(extent === undefined ? {} : { detail: withoutIcons(extent) }), action: "run" },
+    { label: "$(play) Run", description: withoutIcons(summary), action: "run" },
     option("$(filter) Values", "where"),
     option("$(list-filter) Scenarios", "amount"),
     option("$(sync) Repetitions", "repeat"),
