@@ -28,6 +28,7 @@ const ANSWERS = {
   tests: "Listing",
   trace: "Trace",
   verdictdata: "VerdictData",
+  verdicts: "VerdictHints",
   versions: "ServerVersions",
 };
 

@@ -44,7 +44,7 @@ export function createClient(
   let answered = false;
   /** Exists only while the server runs, as its data goes with it. */
   let verdicts: VerdictPainter | undefined;
-  const client = new DiscreetClient(
+  const client: LanguageClient = new DiscreetClient(
     "robbdd",
     "RobBDD",
     { command, args: [...args], transport: TransportKind.stdio, options: { cwd, env: serverVariables(process.env, env) } },
@@ -69,8 +69,9 @@ export function createClient(
       },
       middleware: {
         provideInlayHints: (document, part, token, next) => {
-          const ask = (range: vscode.Range) => next(document, range, token);
-          return verdicts === undefined ? ask(part) : verdicts.takeHints(document, part, ask);
+          const hints = next(document, part, token);
+          const ask = () => client.sendRequest("robbdd/verdicts", { uri: document.uri.toString() }, token);
+          return verdicts === undefined ? hints : verdicts.takeHints(document, hints, ask);
         },
         provideCodeLenses: (document, token, next) => {
           const ask = () => next(document, token);

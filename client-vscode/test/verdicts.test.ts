@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { CodeLens, InlayHint, TextDocument } from "vscode";
+import type { CodeLens, TextDocument } from "vscode";
+import type { VerdictHints } from "../src/answers/verdicts";
 import { appearanceOf, marksOfHints, marksOfLenses } from "../src/verdicts/marks";
 
 const FRESH = { stale: false, rejudged: false, consequence: false, reason: "" };
@@ -105,8 +106,8 @@ test("a pass rate is drawn at the end of the line below its lens", () => {
   ]);
 });
 
-function hint(line: number, character: number, label: string, data: unknown, tooltip?: string): InlayHint {
-  return { position: { line, character }, label, tooltip, data } as unknown as InlayHint;
+function hint(line: number, character: number, label: string, data: unknown, tooltip?: string): VerdictHints[number] {
+  return { position: { line, character }, label, tooltip, data } as VerdictHints[number];
 }
 
 function lens(title: string, data: unknown): CodeLens {

@@ -37,10 +37,10 @@ PEER = {
 """Recorded figures of the server of secoro-dsl-nvim, on a machine of the same kind (2 cores at 2.5 GHz), not in this
 run: what it needs comes from no package registry. Files of the same length are not the same files."""
 ON_EVERY_STROKE = (
-    *("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange"),
-    "documentHighlight",
+    *("textDocument/semanticTokens/full/delta", "textDocument/inlayHint", "robbdd/verdicts", "textDocument/codeLens"),
+    *("textDocument/documentSymbol", "textDocument/foldingRange", "textDocument/documentHighlight"),
 )
-"""Requests of VS Code after each change of a text. It requests hints of the visible lines only."""
+"""Requests of VS Code and our extension after each change of a text: hints of visible lines, verdicts of all lines."""
 VISIBLE = 60
 """Lines that an editor shows."""
 STAMPS = """import os, time
@@ -108,9 +108,9 @@ class Session:
         self.client.notify("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
         shown = {"line": max(0, place["line"] - VISIBLE // 2), "character": 0}
         visible = {"start": shown, "end": {"line": shown["line"] + VISIBLE, "character": 0}}
-        more = {"previousResultId": self._coloured, "range": visible, "position": place}
+        more = {"previousResultId": self._coloured, "range": visible, "position": place, "uri": self.uri}
         methods = ON_EVERY_STROKE if asking else ()
-        asked = [self.client.ask(f"textDocument/{method}", {**self.document, **more}) for method in methods]
+        asked = [self.client.ask(method, {**self.document, **more}) for method in methods]
         answers = [self.client.answer(number) for number in asked]
         if answers:
             self._coloured = str(answers[0][1]["result"]["resultId"])

@@ -14,7 +14,7 @@ import pytest
 from lsprotocol import types
 
 import robbdd_tools as robbdd
-from kit import EXAMPLES
+from kit import EXAMPLES, schema_errors
 from lsp_kit import PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
@@ -54,6 +54,26 @@ async def hint(editor: Editor, clause: str, beginning: str) -> str:
         while not (shown := (await hints(editor)).get(clause, "")).startswith(beginning):
             await asyncio.sleep(0.02)
     return shown
+
+
+async def test_clients_that_draw_verdicts_get_those_of_the_whole_document(judged: Editor) -> None:
+    await hint(judged, "at-goal", "✔ 2/2")
+    document = types.TextDocumentIdentifier(uri=judged.uri)
+    hints = await judged.client.text_document_inlay_hint_async(types.InlayHintParams(document, judged.everything()))
+    answer = plain(await judged.client.protocol.send_request_async("robbdd/verdicts", {"uri": judged.uri}))
+    assert schema_errors("verdicts.schema.json", answer) == []
+    expected = [
+        {
+            "position": {"line": hint.position.line, "character": hint.position.character},
+            "label": hint.label,
+            "tooltip": hint.tooltip,
+            "data": plain(hint.data),
+        }
+        for hint in hints or ()
+        if hint.data is not None
+    ]
+    assert len(expected) > 3
+    assert [{name: one[name] for name in expected[0]} for one in answer] == expected
 
 
 async def test_an_edited_clause_shows_which_executions_flip_until_the_edit_is_undone(judged: Editor) -> None:

@@ -1,6 +1,7 @@
 // The verdicts among the server's hints and lenses, as marks in the text.
 import type * as vscode from "vscode";
 import type { VerdictData } from "../answers/verdictdata";
+import type { VerdictHints } from "../answers/verdicts";
 import { isVerdictData } from "../answers/validators.mjs";
 import type { Immutable } from "../immutable";
 
@@ -24,6 +25,8 @@ const WIDE_LINE = 95;
 
 type Text = Pick<vscode.TextDocument, "lineAt" | "lineCount">;
 
+type Hint = Immutable<VerdictHints[number]>;
+
 /** The appearance of a hint or a lens of the server; undefined if it has no verdict. */
 export function appearanceOf(shown: object): Appearance | undefined {
   const data: unknown = "data" in shown ? shown.data : undefined;
@@ -36,15 +39,14 @@ export function appearanceOf(shown: object): Appearance | undefined {
  * someone is typing there; if it were out of sight there, it is drawn at a line next to it. Any other verdict that would be
  * out of sight after its clause is drawn before it.
  */
-export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
+export function marksOfHints(document: Text, hints: readonly Hint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {
     const appearance = appearanceOf(hint);
     if (appearance === undefined) {
       return [];
     }
     const { line, character } = hint.position;
-    const words = typeof hint.label === "string" ? hint.label : hint.label.map(({ value }) => value).join("");
-    const tooltip = typeof hint.tooltip === "string" ? hint.tooltip : (hint.tooltip?.value ?? "");
+    const { label: words, tooltip = "" } = hint;
     const mark = { ...appearance, words, line, tooltip };
     const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
     if (appearance.rejudged && text.length > WIDE_LINE) {

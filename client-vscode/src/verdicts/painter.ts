@@ -1,5 +1,6 @@
 // Draw verdicts in their colours: the editor has only one colour for all hints and one for all lenses, including icons.
 import * as vscode from "vscode";
+import { isVerdictHints } from "../answers/validators.mjs";
 import { type Mark, appearanceOf, marksOfHints, marksOfLenses } from "./marks";
 
 /** Gap between a verdict and the text. */
@@ -33,19 +34,22 @@ export class VerdictPainter implements vscode.Disposable {
     }),
   ];
 
-  /** Request the hints of a whole document and return those in the visible part that are not verdicts. */
+  /**
+   * Draw the verdicts of a document, and return those of the hints of its visible part that are not verdicts. `ask` requests
+   * the verdicts of the whole document: all its hints would take ten times as long in a long document.
+   */
   async takeHints(
     document: vscode.TextDocument,
-    part: vscode.Range,
-    ask: (whole: vscode.Range) => Answer<vscode.InlayHint>,
+    hints: Answer<vscode.InlayHint>,
+    ask: () => Promise<unknown>,
   ): Promise<vscode.InlayHint[] | null | undefined> {
     const { version } = document;
-    const found = await ask(new vscode.Range(0, 0, document.lineCount, 0));
+    const [found, verdicts] = await Promise.all([hints, ask().catch(() => undefined)]);
     // After an edit, the editor requests them again.
-    if (found && document.version === version) {
-      this.hints.show(document, marksOfHints(document, found));
+    if (document.version === version && isVerdictHints(verdicts)) {
+      this.hints.show(document, marksOfHints(document, verdicts));
     }
-    return found?.filter((hint) => appearanceOf(hint) === undefined && part.contains(hint.position));
+    return found?.filter((hint) => appearanceOf(hint) === undefined);
   }
 
   /** Request the lenses of a document and return those that are not verdicts. */

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from lsprotocol import types
 
+from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import appearance, clause_hints, row_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
@@ -16,6 +17,7 @@ from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.scenario_hints import ScenarioHint, scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.result_hover import history_line, pictures_of, replay_link
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
@@ -24,6 +26,8 @@ from robbdd_tools.run.database import DatabaseProblem
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
 
+VERDICTS = "robbdd/verdicts"
+"""Request for the hints with verdicts of a whole document, for clients that draw them themselves."""
 STILL_READING = "*(so far: files that may use it are still being read)*"
 
 
@@ -103,20 +107,8 @@ def _register_hints(server: RobbddServer) -> None:
         def find(snapshot: Snapshot) -> list[types.InlayHint]:
             document = document_of(snapshot, params.text_document.uri)
             wanted = ls.convert.span(document, params.range)
-            findings = ls.findings_of(snapshot, document.uri)
             return (
-                [
-                    types.InlayHint(
-                        position=ls.convert.position(document, hint.head.end),
-                        label=hint.label,
-                        tooltip=hint.tooltip,
-                        padding_left=True,
-                        data=appearance(hint),
-                    )
-                    for find_hints in (clause_hints, row_hints, policy_hints)
-                    for hint in find_hints(snapshot, document.uri, findings)
-                    if wanted.contains(hint.head.end)
-                ]
+                _verdicts(ls, snapshot, document, wanted)
                 + [
                     types.InlayHint(
                         position=ls.convert.position(document, hint.span.end),
@@ -129,6 +121,33 @@ def _register_hints(server: RobbddServer) -> None:
             )
 
         return await ls.analyse(find)
+
+    @server.feature(VERDICTS)
+    async def verdicts(ls: RobbddServer, params: Any) -> list[types.InlayHint]:
+        uri = Parameters(params).text("uri")
+
+        def find(snapshot: Snapshot) -> list[types.InlayHint]:
+            document = document_of(snapshot, uri)
+            return _verdicts(ls, snapshot, document, Span(0, len(document.text)))
+
+        return await ls.analyse(find)
+
+
+def _verdicts(ls: RobbddServer, snapshot: Snapshot, document: Document, wanted: Span) -> list[types.InlayHint]:
+    """Return the hints with the verdicts on the clauses, rows and policies that end in a part of a document."""
+    findings = ls.findings_of(snapshot, document.uri)
+    return [
+        types.InlayHint(
+            position=ls.convert.position(document, hint.head.end),
+            label=hint.label,
+            tooltip=hint.tooltip,
+            padding_left=True,
+            data=appearance(hint),
+        )
+        for find_hints in (clause_hints, row_hints, policy_hints)
+        for hint in find_hints(snapshot, document.uri, findings)
+        if wanted.contains(hint.head.end)
+    ]
 
 
 def _scenario_hint(ls: RobbddServer, document: Document, hint: ScenarioHint) -> types.InlayHint:
