@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from robbdd_tools.logs.log_contents import UnreadableLog
-from robbdd_tools.logs.log_table import read_events
 from robbdd_tools.logs.log_files import is_log
+from robbdd_tools.logs.log_table import read_events
 from robbdd_tools.logs.open_log import read_log
 
 ROWS = """time,frame,x [mm],y,z,event,elbow [deg]
