@@ -170,3 +170,26 @@ def test_the_first_words_of_a_requirement_lead_to_what_the_language_has(phrase: 
     fault = faults(text)[0]
     assert text[fault.span.start : fault.span.end] == found
     assert fault.message.startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found", "written"),
+    [
+        (GIVEN, "a: holds(<robot> moves slower than 2 km/h, before <end>)", "km/h", "0.555556 m/s"),
+        (GIVEN, "a: holds(<robot> moves slower than 25 cm/s, before <end>)", "cm/s", "0.25 m/s"),
+        (GIVEN, "a: holds(<part> is tilted less than 10 degrees, before <end>)", "degrees", "10 deg"),
+        (GIVEN, "a: holds(<part> is tilted less than 10°, before <end>)", "°", "10 deg"),
+        (GIVEN, "a: holds(<robot> is nearer than 1.5 metres to <part>, before <end>)", "metres", "1.5 m"),
+        (GIVEN, "a: holds(it takes less than 2 min, from <start> until <end>)", "min", "120 s"),
+        ("0.5 seconds after", "500 ms after", "ms", "0.5 seconds"),
+        ("0.5 seconds after", "within 2 minutes after", "minutes", "120 seconds"),
+    ],
+)
+def test_units_of_others_are_converted(old: str, new: str, found: str, written: str) -> None:
+    text = TEMPLATE.replace(old, new)
+    assert text != TEMPLATE
+    (fault,) = faults(text)
+    assert text[fault.span.start : fault.span.end] == found
+    assert fault.message.endswith(f"'{written}'")
+    assert written in fixed(text, fault)
+    assert faults(fixed(text, fault)) == ()

@@ -9,6 +9,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.base.quantity_units import units_of
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.foreign_units import foreign_unit
 from robbdd_tools.syntax.joined import joining_word
 from robbdd_tools.syntax.named_groups import named_group
 from robbdd_tools.syntax.near_misses import near_miss, other_file
@@ -96,6 +97,7 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     explaining = (
         phrase_fault,
         behaviour_fault,
+        foreign_unit,
         _without_unit,
         unit_of_setting,
         set_in_quantifier,

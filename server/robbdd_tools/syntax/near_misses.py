@@ -99,7 +99,7 @@ _NEAR_MISSES = (
         lambda quoted: f"<{quoted[1:-1]}>",
     ),
     NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),
-    NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
+    NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
     NearMiss(r"", r";", "no line ends with ';': remove it", fix=lambda _: ""),
     NearMiss(r"", r"=", "write ':' instead of '='", ":", lambda _: ":"),
     NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r":\s*[\w\-]+", "variables have no declared type: remove it", fix=lambda _: ""),
