@@ -1,12 +1,18 @@
-"""``python tests/campaign/cluster_figures.py N``: N executions are killed, resumed, moved to a cluster and finished.
+"""The figures of clusters in ``docs/campaigns.md``.
 
-Agents need no time (``study_agents``), so the figures are those of the engine. Prints the peak memory of the client and
-of the scheduler, and whether the results equal those of an uninterrupted study on one machine.
+``python tests/campaign/cluster_figures.py N``: N executions are killed, resumed, moved to a cluster, finished. Agents
+need no time (``study_agents``), so the figures are those of the engine. Prints the peak memory of the client and of the
+scheduler, and whether the results equal those of an uninterrupted study on one machine.
+
+``… efficiency N``: N repetitions of ``examples/pickplace`` in one process, in two, and on two workers. Prints the
+processor time of all processes together, the wall time, and whether the results are equal.
 """
 
 from __future__ import annotations
 
 import os
+import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -17,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from campaign.dask_kit import dask_processes
 from campaign.study_agents import write_study
+from kit import EXAMPLES
 
 DRIVER = Path(__file__).with_name("study_agents.py")
 STUDY = """import "m.bdd"
@@ -25,6 +32,7 @@ Study fetching {{
     seed: 3
 }}
 """
+TIMED = 'import "pickplace.bdd"\nStudy p {{ repeat: {} seed: 1 }}\n'
 WORKERS = 3
 
 
@@ -87,5 +95,44 @@ def main(number: int) -> None:
         print(f"equal exports: {exported(whole) == exported(hurt)}")
 
 
+def efficiency(number: int) -> None:
+    """Execute the same study in three ways."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        shutil.copytree(EXAMPLES / "pickplace", folder / "model")
+        study = folder / "model" / "p.study"
+        study.write_text(TIMED.format(number), encoding="utf-8")
+        tables = [measured(study, f"--jobs {jobs}", "--jobs", str(jobs)) for jobs in (1, 2)]
+        before = processor_time()
+        with dask_processes(folder / "dask", 0) as dask:
+            for _ in range(2):
+                dask.start_worker(quick=False)
+            tables.append(measured(study, "two workers: client", "--scheduler", dask.address))
+            client = processor_time()
+        print(f"two workers: all processes, with their starts: {processor_time() - before:.1f} s")
+        print(f"two workers: scheduler, workers and agents: {processor_time() - client:.1f} s")
+        print(f"equal exports: {len(set(tables)) == 1}")
+
+
+def measured(study: Path, words: str, *options: str) -> bytes:
+    """Execute a study from its beginning, print its times, and return its export."""
+    command = [sys.executable, "-m", "robbdd_tools", "study"]
+    quiet = subprocess.DEVNULL
+    before, began = processor_time(), monotonic()
+    subprocess.run([*command, "run", study.name, "--restart", *options], cwd=study.parent, stdout=quiet, stderr=quiet)
+    print(f"{words}: {processor_time() - before:.1f} s of processor time, {monotonic() - began:.1f} s", flush=True)
+    subprocess.run([*command, "export", study.name, "-o", "x.csv"], cwd=study.parent, check=True, stderr=quiet)
+    return (study.parent / "x.csv").read_bytes()
+
+
+def processor_time() -> float:
+    """Return the processor time of all ended processes that this one has started, in s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    if sys.argv[1] == "efficiency":
+        efficiency(int(sys.argv[2]))
+    else:
+        main(int(sys.argv[1]))
