@@ -43,7 +43,7 @@ def parameters(value: object) -> list[str]:
     for name, member in sorted(members.items()):
         if not name.startswith("_"):
             found.append(name)
-            function = member.__func__ if isinstance(member, classmethod | staticmethod) else member
+            function: object = getattr(member, "__func__", member)
             found += _of_function(f"{name}.", function) if inspect.isfunction(function) else ()
     return found
 
