@@ -116,7 +116,7 @@ def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Ite
                 yield _symbol(path, entry.name, SymbolKind.SENSOR, entry.span, None)
             case tree.Modelled():
                 yield from _instance_parts(entry, path)
-            case tree.PairFriction():
+            case tree.PairFriction() | tree.WorkspaceBox():
                 pass
 
 
