@@ -132,6 +132,9 @@ def test_a_whole_study_exercises_everything_and_its_report_says_so(folder: Path)
     page = Page(Path("r.html").read_text(encoding="utf-8"))
     assert "levels 5 5 100.0 % ✔ 100 % met pairs 8 8 100.0 % ✔ 100 % met" in page.text
     assert page.open == []
+    # A study stores no sentences, and all repetitions of a scenario have the same name.
+    assert "clause share hold" in page.text
+    assert "t:bench-to-tray -- 1 (repetition " in page.text
     assert "<summary>Coverage</summary>" in Path("r.md").read_text(encoding="utf-8")
 
 

@@ -79,6 +79,12 @@ def test_of_many_executions_that_do_not_hold_the_worst_are_shown(store: RunStore
     assert "<h3>e:v -- 10<" not in text
 
 
+def test_the_clauses_that_are_violated_most_often_are_named_first(store: RunStore) -> None:
+    text = Page(page(store, [0.3, -0.1, -0.2, None], clauses=CLAUSES)).text
+    assert "Violated most often: c5 in 2 of 4 , c6 in 2 of 4 executions ( the worst executions )." in text
+    assert "Violated most often" not in page(store, [0.3])
+
+
 def test_factors_with_several_levels_can_be_chosen(store: RunStore) -> None:
     text = page(store, [0.3, -0.1])
     found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)

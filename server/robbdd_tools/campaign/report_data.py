@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 MOST_SHOWN = 20
 """At most this many executions that do not hold are shown in full."""
+MOST_NAMED = 3
+"""At most this many clauses are named in the summary."""
 MISSING = "—"
 """Shown as the level of an execution that does not have the variable."""
 _BADNESS = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
@@ -141,7 +143,14 @@ def worst(results: Iterable[ExecutionResult]) -> list[ExecutionResult]:
 
 def failed_rows(source: ReportSource) -> list[FailedRow]:
     """Return the worst executions that do not hold."""
-    return [_failed_row(source, one) for one in worst(source.results)]
+    is_repeated = any(result.repetition > 1 for result in source.results)
+    return [_failed_row(source, one, is_repeated=is_repeated) for one in worst(source.results)]
+
+
+def failing_clauses(rows: Iterable[ClauseRow]) -> list[str]:
+    """Return the clauses that are violated most often, in words; at most ``MOST_NAMED``."""
+    failing = sorted((row for row in rows if row.counts.violated), key=lambda row: -row.counts.violated)
+    return [f"{row.name} in {row.counts.violated} of {row.counts.total}" for row in failing[:MOST_NAMED]]
 
 
 def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> ClauseRow:
@@ -185,16 +194,20 @@ def _rank(result: ExecutionResult) -> tuple[int, float, int]:
     return _BADNESS.index(result.verdict), min(margins, default=0.0), result.index
 
 
-def _failed_row(source: ReportSource, result: ExecutionResult) -> FailedRow:
+def _failed_row(source: ReportSource, result: ExecutionResult, *, is_repeated: bool) -> FailedRow:
     curves, lines = source.curves(result)
     clauses = tuple(_judged_rows(result, lines or (0,) * len(result.clauses), curves))
     values = ", ".join(value_words(name, value) for name, value in result.values.items())
     moment = source.moments.get(result.index)
-    return FailedRow(result.name, values, result.verdict, result.seed, source.command(result), clauses, moment)
+    # The names in a study have no repetition.
+    name = (
+        f"{result.name.partition(' (repetition ')[0]} (repetition {result.repetition})" if is_repeated else result.name
+    )
+    return FailedRow(name, values, result.verdict, result.seed, source.command(result), clauses, moment)
 
 
 def _reason(clause: ClauseResult) -> str:
-    at = "" if clause.at is None or clause.verdict is not Outcome.VIOLATED else f"at {clause.at:.2f} s"
+    at = "" if clause.at is None or clause.verdict is not Outcome.VIOLATED else f"at {clause.at:.2f}\u00a0s"
     return ": ".join(filter(None, (at, clause.reason)))
 
 

@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.printable import printable
-from robbdd_tools.campaign.report_data import MOST_SHOWN, clause_rows, counts, factors, failed_rows
+from robbdd_tools.campaign.report_data import MOST_SHOWN, clause_rows, counts, factors, failed_rows, failing_clauses
 from robbdd_tools.campaign.report_factors import (
     confounding_words,
     effect_rows,
@@ -32,7 +32,7 @@ def report_page(source: ReportSource, moments: str = "", problem: str = "") -> s
     """
     results = source.results
     summary = counts(result.verdict for result in results)
-    failed, varied = failed_rows(source), factors(results)
+    failed, varied, clauses = failed_rows(source), factors(results), clause_rows(results)
     required = requirement_results(source.requirements, results)
     heat = {
         "factors": [{"name": one.name, "levels": one.levels, "of": one.of} for one in varied],
@@ -46,7 +46,9 @@ def report_page(source: ReportSource, moments: str = "", problem: str = "") -> s
         requirements=required,
         shown=requirement_summary(required),
         coverage=source.coverage,
-        clauses=clause_rows(results),
+        clauses=clauses,
+        failing=failing_clauses(clauses),
+        sentences=any(row.sentence for row in clauses),
         factors=varied,
         effects=effect_rows(varied, results),
         confounded=confounding_words(varied),
@@ -74,4 +76,10 @@ def template(name: str) -> Template:
 
     loader = PackageLoader("robbdd_tools.campaign", "")
     environment = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=shown)
+    environment.filters["rate"] = unbroken_rate
     return environment.get_template(name)
+
+
+def unbroken_rate(words: str) -> str:
+    """Return a rate with its interval as text that is broken into lines only before the interval."""
+    return words.replace(" ", "\u00a0").replace("\u00a0[", " [")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 from collections.abc import Callable, Mapping
@@ -84,7 +85,7 @@ def study_report(name: str, store: StudyReader) -> ReportSource:
     state = "" if len(results) >= total else f"{len(results)} of {total} executions are stored"
     shown = {"name": "study", "digest": "digest of the study", "version": "RobBDD", "simulator": "simulator"}
     environment = [(words, facts[fact]) for fact, words in shown.items() if facts.get(fact)]
-    environment += [(fact, content) for fact, content in facts.items() if fact.startswith("files ")]
+    environment += used_file_rows(facts)
 
     def command(result: ExecutionResult) -> str:
         return shlex.join(["robbdd", "study", "replay", name, str(result.index + 1)])
@@ -92,6 +93,13 @@ def study_report(name: str, store: StudyReader) -> ReportSource:
     required = requirements_from(facts.get("requirements", "[]"))
     shown_facts = tuple(environment)
     return ReportSource(name, results, state, shown_facts, command, lambda _: ({}, ()), requirements=required)
+
+
+def used_file_rows(facts: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return the names and digests of the other files of a study, each file of all cells once."""
+    every = (json.loads(content) for fact, content in facts.items() if fact.startswith("files "))
+    found = {(name.rpartition("/")[2], str(digest)): None for files in every for name, digest in files.items()}
+    return [(f"file {name}", digest) for name, digest in sorted(found)]
 
 
 def with_traces(source: ReportSource, again: Again, moments: Moments | None) -> ReportSource:
