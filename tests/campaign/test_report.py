@@ -12,7 +12,7 @@ import pytest
 
 from kit import write_manifest
 from robbdd_tools.campaign.report_page import report_page
-from robbdd_tools.campaign.report_source import run_report
+from robbdd_tools.campaign.report_source import run_report, used_file_rows
 from robbdd_tools.cli import main
 from robbdd_tools.protocol.specs import ClauseSpec
 from robbdd_tools.run.store import RunStore
@@ -83,6 +83,12 @@ def test_the_clauses_that_are_violated_most_often_are_named_first(store: RunStor
     text = Page(page(store, [0.3, -0.1, -0.2, None], clauses=CLAUSES)).text
     assert "Violated most often: c5 in 2 of 4 , c6 in 2 of 4 executions ( the worst executions )." in text
     assert "Violated most often" not in page(store, [0.3])
+
+
+def test_a_file_that_several_cells_of_a_study_used_is_listed_once() -> None:
+    one = '{"../../person.xml": "abc"}'
+    facts = {"name": "s", "files ": one, "files scene=b": one, "files scene=c": '{"../../person.xml": "def"}'}
+    assert used_file_rows(facts) == [("file person.xml", "abc"), ("file person.xml", "def")]
 
 
 def test_factors_with_several_levels_can_be_chosen(store: RunStore) -> None:
