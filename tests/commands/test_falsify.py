@@ -50,6 +50,13 @@ class SometimesLow(LowDrops):
         return 0.22 + 0.02 * (seed % 5) / 4
 
 
+class LowInCentimetres(LowDrops):
+    """The same for heights in centimetres."""
+
+    def limit(self, seed: int) -> float:
+        return 100 * super().limit(seed)
+
+
 class Unjudged(LowDrops):
     """Judges nothing."""
 
@@ -110,7 +117,7 @@ def test_the_values_to_keep_fail_with_all_seeds(
 def test_values_of_a_model_with_quantities_are_printed_as_quantities(
     study: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(LowDrops, "limit", lambda *_: 24.0)
+    monkeypatch.setattr(scheduler, "Agent", LowInCentimetres)
     text = f"{HEAD} factor var <drop>: from 20 cm to 40 cm design: grid 2\n}}\n"
     write_study(study.parent, text, QUANTITIES)
     assert main(["falsify", str(study)]) == 1

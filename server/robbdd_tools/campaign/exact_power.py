@@ -41,8 +41,8 @@ def paired_power(pairs: int, discordance: float, difference: float, level: float
     binom: Any = statistics().binom
     flips = np.arange(1, pairs + 1)
     # The most flips in one direction for which the test of so many flips rejects, -1 if it never does.
-    few = binom.ppf((1.0 - level) / 2.0, flips, 0.5)
-    few = np.where(2.0 * binom.cdf(few, flips, 0.5) <= 1.0 - level, few, few - 1)
+    quantile: Any = binom.ppf((1.0 - level) / 2.0, flips, 0.5)
+    few = quantile - (2.0 * binom.cdf(quantile, flips, 0.5) > 1.0 - level)
     gains = (discordance + difference) / (2.0 * discordance)
     rejected = binom.cdf(few, flips, gains) + binom.sf(flips - few - 1, flips, gains)
     return float(np.sum(binom.pmf(flips, pairs, discordance) * rejected))
@@ -56,7 +56,8 @@ def separate_power(count: int, rate: float, other: float, level: float = LEVEL) 
     import numpy as np
 
     stats, held = statistics(), np.arange(count + 1)
-    joint: FloatArray = np.outer(stats.binom.pmf(held, count, rate), stats.binom.pmf(held, count, other))
+    first_run, second_run = (stats.binom.pmf(held, count, true) for true in (rate, other))
+    joint: Any = first_run[:, np.newaxis] * second_run
     total = 0.0
     for holding in range(2 * count + 1):
         first = np.arange(max(0, holding - count), min(holding, count) + 1)
