@@ -99,6 +99,7 @@ def test_of_several_poses_out_of_reach_the_nearest_is_named() -> None:
     for place, turn in ((0.2, 0.0), (0.0, 0.0349), (0.05, 0.1)):
         reason.note(Unreachable(place, turn))
     assert str(reason) == ": its tool stays turned 2.0° away"
+    assert str(Unreachable(0.0, 0.0004)) == "turned less than 0.1° away"
 
 
 @pytest.mark.parametrize("name", list(load_catalog().robots))

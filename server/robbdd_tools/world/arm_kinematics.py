@@ -47,7 +47,8 @@ class Unreachable(BehaviourError):
 
     def __init__(self, place: float, turn: float) -> None:
         """Describe the remaining errors of place (m) and orientation (rad)."""
-        super().__init__(f"{1000 * place:.0f} mm short" if place >= VISIBLE else f"turned {degrees(turn):.1f}° away")
+        angle = f"{degrees(turn):.1f}°" if degrees(turn) >= 0.05 else "less than 0.1°"
+        super().__init__(f"{1000 * place:.0f} mm short" if place >= VISIBLE else f"turned {angle} away")
         self.short = max(place, turn)
 
 
