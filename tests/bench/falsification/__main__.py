@@ -63,13 +63,12 @@ def main(methods: tuple[str, ...]) -> None:
     known = {(one.problem, one.method, one.seed) for one in found}
     # Agents are forks, since starting one takes longer than an execution.
     with fork_server(), patch(*INTERPRETERS):
-        for method, problem in product(methods, PROBLEMS):
-            study = load_study(HERE / problem / f"{problem}.study")
-            for seed in range(1, SEEDS + 1):
-                if (problem, method, seed) not in known:
-                    found.append(searched(study, problem, method, seed))
-                    print(found[-1], flush=True)
-                    write(found)
+        studies = {problem: load_study(HERE / problem / f"{problem}.study") for problem in PROBLEMS}
+        for seed, problem, method in product(range(1, SEEDS + 1), PROBLEMS, methods):
+            if (problem, method, seed) not in known:
+                found.append(searched(studies[problem], problem, method, seed))
+                print(found[-1], flush=True)
+                write(found)
     print(tables(found, BUDGET))
     draw(found, BUDGET, PLOT)
 

@@ -47,23 +47,27 @@ def _rates(found: Sequence[Search]) -> Iterator[str]:
 
 
 def _firsts(found: Sequence[Search], budget: int) -> Iterator[str]:
-    yield "| problem | method | found | median | restricted mean, 95 % interval | share of uniform's, 95 % interval |"
+    yield "| problem | method | searches with a failure | median | restricted mean | share of uniform's |"
     yield "|---|---|---|---|---|---|"
     for problem in dict.fromkeys(one.problem for one in found):
         base = _points(found, problem, "uniform")
         for method in ("uniform", "sobol", "cma-es"):
             own = _points(found, problem, method)
-            if not own:
-                continue
-            hits = sum(one.failures > 0 for one in found if (one.problem, one.method) == (problem, method))
-            middle = f"{median(own):g}" if 2 * hits > len(own) else f"> {budget}"
-            low, high = _interval(_mean, own)
-            mean = f"{np.mean(own):.1f}, {low:.1f} to {high:.1f}"
-            share = "1"
-            if method != "uniform" and len(own) == len(base):
-                low, high = _interval(_share, own, base)
-                share = f"{np.mean(own) / np.mean(base):.2f}, {low:.2f} to {high:.2f}"
-            yield f"| {problem} | `{method}` | {hits} of {len(own)} | {middle} | {mean} | {share} |"
+            if own:
+                hits = sum(one.failures > 0 for one in found if (one.problem, one.method) == (problem, method))
+                middle = f"{median(own):g}" if 2 * hits > len(own) else f"> {budget}"
+                share = "1" if method == "uniform" else _shown(_share, own, base, digits=2)
+                mean = _shown(_mean, own, digits=1)
+                yield f"| {problem} | `{method}` | {hits} of {len(own)} | {middle} | {mean} | {share} |"
+
+
+def _shown(statistic: Any, *samples: Sequence[int], digits: int) -> str:
+    """Return a statistic with its interval in brackets, if the samples have a spread."""
+    value = f"{statistic(*map(np.array, samples)):.{digits}f}"
+    if all(len(set(one)) == 1 for one in samples):
+        return value
+    low, high = _interval(statistic, *samples)
+    return f"{value} [{low:.{digits}f}, {high:.{digits}f}]"
 
 
 def _points(found: Sequence[Search], problem: str, method: str) -> list[int]:
@@ -82,8 +86,6 @@ def _share(one: Any, other: Any, axis: int = -1) -> Any:
 
 def _interval(statistic: Any, *samples: Sequence[int]) -> tuple[float, float]:
     """Return a bootstrap interval; several samples are resampled independently, as their points are."""
-    if any(len(set(one)) == 1 for one in samples):
-        return float("nan"), float("nan")
     stats: Any = import_module("scipy.stats")
     chance = np.random.default_rng(1)
     found = stats.bootstrap(samples, statistic, n_resamples=9999, method="percentile", rng=chance)
@@ -100,8 +102,9 @@ def draw(found: Sequence[Search], budget: int, path: Path) -> None:
         for method, colour in (("uniform", "#d29922"), ("sobol", "#2ea043"), ("cma-es", "#3f8fd6")):
             own = [one for one in found if (one.problem, one.method) == (problem, method)]
             hits = sorted(one.points for one in own if one.failures)
-            shares = [100.0 * number / len(own) for number in range(len(hits) + 1)] if own else [0.0]
-            axis.step([0, *hits, budget], [*shares, shares[-1]], where="post", color=colour, label=method)
+            shares = [100.0 * number / max(1, len(own)) for number in range(len(hits) + 1)]
+            if own:
+                axis.step([0, *hits, budget], [*shares, shares[-1]], where="post", color=colour, label=method)
         axis.set(title=problem, xlabel="executions", xlim=(0, budget), ylim=(0, 100))
         axis.spines[["top", "right"]].set_visible(False)
     axes[0][0].set_ylabel("searches with a failure (%)")
