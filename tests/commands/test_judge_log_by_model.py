@@ -9,7 +9,7 @@ import pytest
 
 from kit import EXAMPLES
 from logs.bags import text, transform, truth, write
-from logs.drives import ONE, clauses, drive, robbdd
+from logs.drives import ONE, clauses, drive, judged, robbdd
 
 pytestmark = pytest.mark.physics
 ROBOT = """import "pickplace.bdd"
@@ -84,3 +84,14 @@ def test_a_scenex_places_what_the_log_lacks_if_the_frame_is_the_worlds(
     asked = "is not in the log, and the .scenex places it in the world: name the frame of the world with --world FRAME"
     assert f"env:bin {placed if verdict == 'holds' else asked}" in done.stderr
     assert "the log has no frame for env:cube0" not in done.stderr
+
+
+def test_a_missing_carrier_of_another_workspace_is_named(tmp_path: Path) -> None:
+    """Whether the cube is at the left bin depends on the right one, which could be inside it."""
+    messages = drive()
+    del messages[1]
+    found, remarks = judged(EXAMPLES / "pickplace", tmp_path, messages)
+    (goal,) = (one for one in found if one["name"].endswith("at-goal"))
+    assert (goal["verdict"], goal["reason"]) == ("unknown", "the trace has no record of 'env:bin_right'")
+    assert "the log has no frame for env:bin_right; " in remarks
+    assert "name it with --frame bin_right=FRAME" in remarks

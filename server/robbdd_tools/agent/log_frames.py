@@ -79,8 +79,11 @@ class Frames:
                 problems[element] = str(problem)
         asked = {agent for agent in jointed if agent not in self.of}
         self._bases = self._base_frames(elements_of(request.bases, cast.agents), asked)
+        # Whether a thing is at a place also depends on the workspaces of others, which may be inside this one.
+        carriers = {carrier for own in spec.scene.workspaces.values() for carrier in own}
+        unused = set(spec.scene.unused) - carriers
         for element, problem in problems.items():
-            used = element in (*spec.scene.objects, *spec.scene.agents) and element not in spec.scene.unused
+            used = element in (*spec.scene.objects, *spec.scene.agents) and element not in unused
             if used and (element not in jointed or element in stated):
                 remarks.append(problem)
         self._stated_world = bool(request.world)
