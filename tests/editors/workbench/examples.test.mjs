@@ -5,12 +5,13 @@ import { editing } from "./stories/editing.mjs";
 import { edits } from "./stories/edits.mjs";
 import { graph } from "./stories/graph.mjs";
 import { preview } from "./stories/preview.mjs";
+import { running } from "./stories/running.mjs";
 import { verdicts } from "./stories/verdicts.mjs";
 
 const window = new SharedWindow();
 
 after(() => window.close());
 
-for (const story of [preview, graph, editing, edits, verdicts]) {
+for (const story of [preview, graph, editing, edits, verdicts, running]) {
   describe(story.name, () => story(window));
 }
