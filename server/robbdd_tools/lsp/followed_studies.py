@@ -130,6 +130,7 @@ def _state(folder: Path) -> _State | None:
 
 def _words(tally: Tally, total: int, rate: float) -> str:
     """Return the progress in words. ``rate`` is in executions per s; 0 if unknown."""
+    from robbdd_tools.campaign.study_clauses import clause_words
     from robbdd_tools.campaign.study_progress import StudyProgress
 
     parts = [StudyProgress(total, tally, rate).words]
@@ -138,5 +139,5 @@ def _words(tally: Tally, total: int, rate: float) -> str:
         parts.append(f"{tally.holding:,} hold ({tally.holding / tally.finished:.0%}), {failed:,} do not")
     worst = tally.worst()
     if worst is not None:
-        parts.append(f"worst clause: {worst[0]}")
+        parts.append(f"worst clause: {clause_words(worst[0])}")
     return "; ".join(parts)
