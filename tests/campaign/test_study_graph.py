@@ -31,6 +31,7 @@ Study all {
     stop: rate 0.95 against 0.9
     block: repetition
     traces: failures 20 MB
+    cover: { pairs 90 %, events 100 % }
     factor bhv <tested>: { <tested>, pick-place }
 }
 """
@@ -96,6 +97,8 @@ def test_a_required_rate_repetitions_blocks_and_traces_are_stated(every_setting:
         rbw:stopping-rule [ a rbw:RateRule ; rbw:required-rate ?rate ; rbw:refuted-rate ?refuted ] }"""
     wanted = ("3", "7", "40", "90.0", "repetition", "failures", "20", "0.95", "0.9")
     assert rows(every_setting, query) == [wanted]
+    goals = "SELECT ?kind ?share { ?study rbw:coverage-goal [ rbw:coverage-kind ?kind ; rbw:percentage ?share ] }"
+    assert rows(every_setting, goals) == [("events", "100.0"), ("pairs", "90.0")]
 
 
 def test_a_study_in_json_ld_or_turtle_is_read_as_the_same_sound_graph(every_setting: Graph, ranges: Graph) -> None:

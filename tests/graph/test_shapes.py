@@ -48,6 +48,8 @@ DAMAGE: dict[str, list[str]] = {
     "factor-variable": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:of-variable t:fetch"],
     "factor-bounds": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:from-value 2", "+ t:range rbw:to-value 1"],
     "factor-upper-bound": ["+ t:range a rbw:RangeFactor", "+ t:range rbw:from-value 1"],
+    "goal-kind": ["+ t:goal a rbw:CoverageGoal", "+ t:goal rbw:coverage-kind 1"],
+    "goal-percentage": ["+ t:goal a rbw:CoverageGoal", "+ t:goal rbw:percentage 101"],
     "rule-width": ["+ t:rule a rbw:WidthRule", "+ t:rule rbw:width 1"],
     "rule-rate": ["+ t:rule a rbw:RateRule", "+ t:rule rbw:required-rate 1", "+ t:rule rbw:refuted-rate 2"],
     "rule-required-rate": ["+ t:rule a rbw:RateRule", "+ t:rule rbw:required-rate 1"],

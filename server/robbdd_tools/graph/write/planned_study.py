@@ -1,4 +1,4 @@
-"""Write a study as triples: its scenarios, factors with levels, design, seeds, stopping rule and required rate.
+"""Write a study as triples: its scenarios, factors with levels, design, seeds, stopping rule, required rate, goals.
 
 The nodes are named after the digest of the study, so equal studies have equal graphs.
 """
@@ -109,6 +109,7 @@ class _Writer:
         to.enlist(study, "rbw:factor-list", (*self._factors(), *self._ranges()))
         self._design()
         self._rule()
+        self._goals()
 
     def _factors(self) -> Iterator[Node]:
         for place, factor in enumerate(self._content.factors, start=1):
@@ -153,6 +154,13 @@ class _Writer:
             node = self._to.node(f"{self._study}/design", DESIGN_TYPES[design.kind])
             self._to.link(self._study, "rbw:design", node)
             self._to.say(node, "rbw:design-size", design.size)
+
+    def _goals(self) -> None:
+        for kind, share in self._content.goals.items():
+            node = self._to.node(f"{self._study}/goal/{kind}", "rbw:CoverageGoal")
+            self._to.link(self._study, "rbw:coverage-goal", node)
+            self._to.say(node, "rbw:coverage-kind", kind)
+            self._to.say(node, "rbw:percentage", float(share))
 
     def _rule(self) -> None:
         numbers = self._content.numbers
