@@ -87,8 +87,10 @@ def study_keyword_meaning(tokens: Sequence[Token], number: int) -> str | None:
     is_value = tokens[number + 1].text in (",", "}") or (bool(before) and before[-1].text == "Study")
     if word in FORMS and not is_value:
         return study_word_meaning(word)
-    for token in reversed(before):
-        if token.text == "{":
+    for place in range(len(before) - 1, -1, -1):
+        token = before[place]
+        # The brace of a list follows a colon, that of the study its name.
+        if token.text == "{" and before[place - 1].text != ":":
             return None
         if token.kind == "name" and token.text in FORMS:
             inner = re.findall(r"(?<![\w<\-])[a-z][a-z\-]*", FORMS[token.text][0])
