@@ -9,7 +9,7 @@ import pytest
 
 from kit import EXAMPLES
 from logs.bags import text, transform, truth, write
-from logs.drives import ONE, clauses, drive, judged, robbdd
+from logs.drives import ONE, clauses, drive, robbdd
 
 pytestmark = pytest.mark.physics
 ROBOT = """import "pickplace.bdd"
@@ -86,12 +86,43 @@ def test_a_scenex_places_what_the_log_lacks_if_the_frame_is_the_worlds(
     assert "the log has no frame for env:cube0" not in done.stderr
 
 
+HALL = """ns h = 'https://example.org/h/'
+obj set (ns=h) things { object cube0, object dock_table, object shelf_table }
+ws set (ns=h) places { workspace dock_ws, workspace shelf_ws }
+agn set (ns=h) arms { agent panda }
+comp (ns=h) dock of ws <places.dock_ws> { obj <things.dock_table> }
+comp (ns=h) shelf of ws <places.shelf_ws> { obj <things.shelf_table> }
+scene (ns=h) hall { obj set <things> ws comp <dock> ws comp <shelf> agn set <arms> }
+"""
+LIFT = """import "hall.scene"
+ns c = 'https://example.org/c/'
+Task (ns=c) task
+Event (ns=c) begin
+Event (ns=c) end
+Event (ns=c) start
+Event (ns=c) done
+Scenario Template (ns=c) lift {
+    duration: from <begin> until <end>
+    task: <task>
+    var thing
+    When: Behaviour (ns=c) take { duration: from <start> until <done>  <arms.panda> picks <thing> }
+    Then: at-dock: holds(<thing> is located at <places.dock_ws>, before <start>)
+}
+User Story (ns=c) lifting {
+    As A "x"  I Want "y"  So That "z"
+    Scenarios: Scenario one { template: <lift> scene: <hall> variation: var <lift.thing>: { <things.cube0> } }
+}
+"""
+
+
 def test_a_missing_carrier_of_another_workspace_is_named(tmp_path: Path) -> None:
-    """Whether the cube is at the left bin depends on the right one, which could be inside it."""
-    messages = drive()
-    del messages[1]
-    found, remarks = judged(EXAMPLES / "pickplace", tmp_path, messages)
-    (goal,) = (one for one in found if one["name"].endswith("at-goal"))
-    assert (goal["verdict"], goal["reason"]) == ("unknown", "the trace has no record of 'env:bin_right'")
-    assert "the log has no frame for env:bin_right; " in remarks
-    assert "name it with --frame bin_right=FRAME" in remarks
+    """Whether a thing is at the dock depends on the shelf, which could be inside it, although no clause is about it."""
+    (tmp_path / "hall.scene").write_text(HALL, encoding="utf-8")
+    (tmp_path / "lift.bdd").write_text(LIFT, encoding="utf-8")
+    rows = [f"{t},{name},0,0,{z}," for t in (0, 0.4, 0.8) for name, z in (("cube0", 0.1), ("dock_table", 0))]
+    table = "\n".join(["time,frame,x,y,z,event", *rows, "0.8,,,,,pick-start"])
+    (tmp_path / "log.csv").write_text(table + "\n", encoding="utf-8")
+    done = robbdd(tmp_path, "judge", "log.csv", "lift.bdd", "--no-store")
+    assert "the trace has no record of 'shelf_table'" in done.stdout
+    assert "the log has no frame for h:shelf_table; " in done.stderr
+    assert "name it with --frame shelf_table=FRAME" in done.stderr
