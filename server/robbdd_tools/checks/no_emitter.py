@@ -138,7 +138,8 @@ def _unemitted(site: Site, node: tree.Node, template: Site, emitters: _Emitters)
 
 def _emissions(template: Site, event: str, moment: str | None) -> Iterator[Fix]:
     """Yield fixes that add ``emits … as <event>`` to a behaviour, for one of its moments or for all of them."""
-    uses = (node for node in walk(template.tree) if isinstance(node, tree.BehaviourUse))
+    nodes = () if template.tree is None else walk(template.tree)
+    uses = (node for node in nodes if isinstance(node, tree.BehaviourUse))
     for use in (use for use in uses if use.name.span.start < use.name.span.end):
         emitted = {emission.moment.text for emission in use.emissions}
         end = template.span((use.action, *use.emissions)[-1]).end

@@ -26,7 +26,7 @@ def read_stated_settings(records: Records, objects: Iterable[Iri]) -> dict[Iri, 
 def stated_setting(name: str, value: PropertyValue) -> str | None:
     """Return the value of a configuration that one value of a property states; ``None`` for any other property."""
     measured = SETTINGS.get(name)
-    if value.measures != measured:
+    if measured is None or value.measures != measured:
         return None
     return value.text if measured == NUMBER else f"{read_quantity(value.text, measured).si:.12g}"
 
