@@ -21,7 +21,7 @@ from robbdd_tools.agent import log_evidence
 from robbdd_tools.agent.judge_log import verdict_on
 from robbdd_tools.agent.log_evidence import evidence_of
 from robbdd_tools.base import large_arrays
-from robbdd_tools.logs import joint_tracks, log_contents, stored_rows, transform_batches
+from robbdd_tools.logs import joint_tracks, stored_rows, track_builder, transform_batches
 from robbdd_tools.logs.open_log import read_log
 from robbdd_tools.monitor import judge
 from robbdd_tools.monitor.verdict import Cause, Outcome
@@ -64,7 +64,7 @@ EVERY = (
 PARTS = (
     (transform_batches, "MOST"),
     (stored_rows, "BLOCK"),
-    (log_contents, "BLOCK"),
+    (track_builder, "BLOCK"),
     (joint_tracks, "BLOCK"),
     (log_evidence, "BLOCK"),
     (judge, "PART"),

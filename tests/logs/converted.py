@@ -15,12 +15,15 @@ from rosbags.rosbag1 import Writer as Writer1
 from logs.bags import ROS1, header
 
 KINDS = ("ros1", "foxglove", "csv")
+DRAWN = "visualization_msgs/msg/MarkerArray"
+"""Drawings for viewers, which say nothing that is judged."""
 
 
 def messages(bag: Path) -> Iterator[tuple[str, int, str, Any]]:
     """Yield topic, time of reception (ns), type and content."""
     with AnyReader([bag]) as reader:
-        for connection, received, raw in reader.messages():
+        known = [one for one in reader.connections if one.msgtype != DRAWN]
+        for connection, received, raw in reader.messages(connections=known):
             yield connection.topic, received, connection.msgtype, reader.deserialize(raw, connection.msgtype)
 
 
