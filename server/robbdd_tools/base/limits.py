@@ -68,7 +68,7 @@ SCENE_SECONDS = Limit("scene-seconds", 30, "seconds")
 SCENE_MEMORY = Limit("scene-memory", 2048 * MIB, "bytes")
 """Largest address space of the process that sets them up, if the system can limit it. The examples take 250 MiB."""
 LOG_SECONDS = Limit("log-seconds", 60, "seconds")
-"""Maximum time to read the names in a log while a model is edited. An hour of eight transforms at 100 Hz takes 20 s."""
+"""Maximum time to read the names in a log while a model is edited."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
