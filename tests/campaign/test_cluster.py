@@ -68,12 +68,6 @@ def test_a_cluster_gives_the_results_of_one_machine_and_refuses_other_versions(
     assert "there is no scheduler at" in capsys.readouterr().err
 
 
-@pytest.fixture(autouse=True)
-def _(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A worker forbids users' code in its process, which is the one of the tests here."""
-    monkeypatch.setenv(NO_USER_CODE, "")
-
-
 def test_versions_that_differ_are_named() -> None:
     assert list(differences(versions(), versions())) == []
     there = {**versions(), "numpy": "1.0", "Python": "2.7", "words-of-others": "3"}

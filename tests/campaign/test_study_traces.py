@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from campaign.study_agents import STUDY, QuickAgent, write_study
-from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.campaign.study_place import study_folder
 from robbdd_tools.campaign.study_run import StudyRun
@@ -144,10 +143,7 @@ def test_without_the_setting_nothing_is_recorded(folder: Path) -> None:
     assert not kept(path)
 
 
-def test_a_worker_returns_wanted_traces(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(
-        NO_USER_CODE, ""
-    )  # a worker forbids users' code in its process, which is the one of the tests here
+def test_a_worker_returns_wanted_traces(folder: Path) -> None:
     path = study(folder, "traces: failures 100 MB")
     path.write_text(path.read_text(encoding="utf-8").replace("batch: 8", "batch: 40"), encoding="utf-8")
     loaded = load_study(path)

@@ -44,10 +44,10 @@ STATE = State()
 
 
 def breaking(function: Callable[..., Any], word: str) -> Callable[..., Any]:
-    def broken(snapshot: Snapshot, uri: str, *more: Any) -> Any:
+    def broken(snapshot: Snapshot, uri: str, *more: Any, **named: Any) -> Any:
         if word in document_of(snapshot, uri).text:
             raise RuntimeError(f"{word} in {function.__name__}")
-        return function(snapshot, uri, *more)
+        return function(snapshot, uri, *more, **named)
 
     return broken
 
