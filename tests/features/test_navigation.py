@@ -16,6 +16,7 @@ from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
 from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.names.project import Project
+from robbdd_tools.names.scope import Scope
 
 LAB = "file:///fixture/lab.scene"
 
@@ -94,6 +95,24 @@ def test_an_element_is_renamed_in_all_files_from_either_end(old: str, new: str, 
     main, lab = renamed(old, new, "crate_ws", scene)
     assert main == MODEL.replace("tray_ws", "crate_ws")
     assert lab == SCENE.replace("tray_ws", "crate_ws")
+
+
+def test_a_search_for_uses_asks_no_file_without_the_name_for_the_names_that_it_knows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    files = [
+        f"//- f{n}.bdd\nimport \"f{(n + 1) % 9}.bdd\"\nns t = 'https://x/{n}/'\nTask (ns=t) task-{n}\n"
+        for n in range(9)
+    ]
+    case = fixture("".join(files).replace("task-4\n", "task-$04\n"))
+    for n in range(9):
+        fast_diagnostics(case.snapshot, f"file:///fixture/f{n}.bdd")
+    asked: list[str] = []
+    known = Scope.tables.fget
+    assert known is not None
+    monkeypatch.setattr(Scope, "tables", property(lambda one: asked.append(one.own.document.uri) or known(one)))
+    assert lines(case, list(references(case.snapshot, case.uri, case.cursor, with_declaration=True))) == ["f0.bdd:3"]
+    assert asked == [case.uri]
 
 
 def test_a_set_is_renamed_inside_qualified_names() -> None:

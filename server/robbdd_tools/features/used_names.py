@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -48,12 +49,19 @@ def uses_by_part(
 
     The spans count from the start of the declaration. A place that means the name without containing it is left out.
     """
+    if not _word(name[1].rpartition(".")[2]).search(file.document.text):
+        return  # in a large cycle of imports, the name tables of a file are those of all files
     tables = snapshot.scope(file.document.uri).tables
     for placed in file.parts():
         checkpoint()
         spans = _uses_in(snapshot, file, placed, tables).get(name)
         if spans is not None:
             yield placed, spans
+
+
+@lru_cache(maxsize=8)
+def _word(name: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<![\w\-]){re.escape(name)}(?![\w\-])")
 
 
 def places_of(snapshot: Snapshot, file: FileAnalysis, name: Name) -> Iterator[Span]:
