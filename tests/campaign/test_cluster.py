@@ -16,6 +16,7 @@ import pytest
 
 from campaign.dask_kit import dask_processes
 from campaign.study_agents import STUDY, QuickAgent, write_study
+from campaign.study_exports import exported
 from robbdd_tools.base.isolation import NO_USER_CODE, WORKER_USER_CODE
 from robbdd_tools.campaign import cluster
 from robbdd_tools.campaign.cluster_study import FIRST, Pace
@@ -35,19 +36,6 @@ LONG = STUDY.replace("repeat: 10", "repeat: 60").replace("batch: 8", "batch: 24"
 """240 executions in ten batches."""
 PATIENCE = 600.0
 """Seconds that a test waits for a process, far more than a busy machine needs."""
-
-
-@pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
-    monkeypatch.chdir(tmp_path)
-    return write_study(tmp_path).relative_to(tmp_path)
-
-
-def exported(path: Path) -> bytes:
-    target = path.with_suffix(".csv")
-    assert main(["study", "export", str(path), "-o", str(target)]) == 0
-    return target.read_bytes()
 
 
 def test_a_cluster_gives_the_results_of_one_machine_and_refuses_other_versions(

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from campaign.dask_kit import dask_processes
-from campaign.study_agents import QuickAgent, write_study
+from campaign.study_agents import QuickAgent
+from campaign.study_exports import exported
 from kit import fill_disk, small_disk
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.cli import main
@@ -24,19 +25,6 @@ from robbdd_tools.workbench.parts import Part, execute_part
 
 AMPLE = 8192
 """KiB that are enough for the study."""
-
-
-@pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
-    monkeypatch.chdir(tmp_path)
-    return write_study(tmp_path).relative_to(tmp_path)
-
-
-def exported(path: Path) -> bytes:
-    target = path.with_suffix(".csv")
-    assert main(["study", "export", str(path), "-o", str(target)]) == 0
-    return target.read_bytes()
 
 
 def finished(shown: str) -> int:

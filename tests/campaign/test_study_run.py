@@ -16,6 +16,7 @@ import duckdb
 import pytest
 
 from campaign.study_agents import QuickAgent, write_study
+from campaign.study_exports import exported
 from robbdd_tools import __version__
 from robbdd_tools.campaign.study_place import study_folder
 from robbdd_tools.campaign.study_progress import StudyProgress
@@ -29,19 +30,6 @@ from robbdd_tools.run.study_schema import NAME
 DRIVER = Path(__file__).with_name("study_agents.py")
 COUNT = 40
 """Executions of ``STUDY``."""
-
-
-@pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
-    monkeypatch.chdir(tmp_path)
-    return write_study(tmp_path).relative_to(tmp_path)
-
-
-def exported(path: Path) -> bytes:
-    target = path.with_suffix(".csv")
-    assert main(["study", "export", str(path), "-o", str(target)]) == 0
-    return target.read_bytes()
 
 
 def stop_after(monkeypatch: pytest.MonkeyPatch, executions: int) -> None:
