@@ -14,7 +14,7 @@ from time import monotonic, sleep
 import pytest
 from rich.console import Console
 
-from campaign.study_agents import QuickAgent, write_study
+from campaign.study_agents import QuickAgent
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.campaign.study_place import study_folder
 from robbdd_tools.campaign.study_progress import StudyProgress
@@ -32,13 +32,6 @@ DRAWN_AT = 20
 """The number of finished executions at which the progress is looked at; some of them are violated."""
 SLOW = 5.0
 """Seconds that the interrupted execution takes."""
-
-
-@pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
-    monkeypatch.chdir(tmp_path)
-    return write_study(tmp_path).relative_to(tmp_path)
 
 
 @pytest.fixture
@@ -70,7 +63,9 @@ def test_without_stored_runs_the_time_is_stated_after_the_first_executions(
 ) -> None:
     main(["study", "run", str(study), "--jobs", "3"])
     first, second = capsys.readouterr().err.splitlines()
-    assert first.endswith(" 40 executions, 5 batches (no stored run tells how long they take: the first ones will)")
+    assert first.endswith(
+        " 40 executions, 5 batches (no stored run has their time: it is stated after the first executions)"
+    )
     stated = r"robbdd: (\d+) executions, about \d+ (?:s|min) left, measured on the first (\d+) executions"
     assert re.findall(stated, second) == [("36", "4")]
     main(["study", "run", str(study), "--restart", "--jobs", "7"])

@@ -122,12 +122,12 @@ async def test_the_progress_of_a_cancelled_run_ends_by_saying_so(
     assert value["message"].startswith("cancelled: ")
 
 
-async def heard(told: Told, kind: str) -> str:
+async def progress_text(told: Told, kind: str) -> str:
     """Wait for a message of this kind about progress, and return its text."""
     async with asyncio.timeout(PATIENCE):
-        while kind not in [one for one, _ in told]:
+        while kind not in [name for name, _ in told]:
             await asyncio.sleep(0.01)
-    return next(value["message"] for one, value in told if one == kind)
+    return next(value["message"] for name, value in told if name == kind)
 
 
 @pytest.mark.parametrize("client", [SHOWN], indirect=True)
@@ -144,8 +144,8 @@ async def test_a_study_that_another_process_executes_shows_its_progress(
         progress = run.progress()
         for _ in range(10):
             next(progress)
-        words = await heard(told, "report")
-        begun = next(value for one, value in told if one == "begin")
+        words = await progress_text(told, "report")
+        begun = next(value for name, value in told if name == "begin")
         assert begun["title"] == "Study fetching"
         done = int(words.split()[0])
         assert 10 <= done < 40
@@ -153,5 +153,5 @@ async def test_a_study_that_another_process_executes_shows_its_progress(
         assert " hold (" in words
         for _ in progress:
             pass
-    assert await heard(told, "end") == "40 of 40 executions; 35 hold (88%), 5 do not; worst clause: on-bench"
+    assert await progress_text(told, "end") == "40 of 40 executions; 35 hold (88%), 5 do not; worst clause: on-bench"
     assert [kind for kind, _ in told].count("begin") == 1

@@ -47,7 +47,7 @@ RULED = {None: CANNOT_TELL, Ruling.SHOWN: OK, Ruling.REFUTED: FINDINGS}
 MOST_MISSING = 10
 """At most this many things of each kind that were not exercised are listed."""
 INTERRUPTED = "the study was interrupted"
-UNMEASURED = "no stored run tells how long they take: the first ones will"
+UNMEASURED = "no stored run has their time: it is stated after the first executions"
 
 
 @dataclass(frozen=True, slots=True)

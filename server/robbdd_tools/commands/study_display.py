@@ -46,7 +46,7 @@ class StudyDisplay:
     If the terminal can move its cursor, the progress is redrawn in place. Otherwise, a line without the workers is
     printed every ``PAUSE`` seconds.
 
-    ``measures`` says that no earlier execution tells how long the study takes: this is stated after its first
+    ``measures`` is true if no earlier execution gives the time of the study, which is then stated after its first
     executions. ``jobs`` is the number of executions at a time.
     """
 

@@ -99,7 +99,7 @@ def _value(signal: EventSignal, message: Any) -> tuple[Any, Any]:
 
 def _fields(value: Any) -> Mapping[str, Any]:
     if isinstance(value, Mapping):
-        # The values of a JSON message have no types.
+        # A JSON message is untyped: neither its names nor its values have types that pyright knows.
         return {str(name): one for name, one in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
     names = [name for name in getattr(value, "__dataclass_fields__", {}) if not name.startswith("_")]
     return {name: getattr(value, name) for name in names}

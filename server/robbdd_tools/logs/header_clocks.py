@@ -182,7 +182,7 @@ class _Pairs:
         row = 0
         while row < len(received):
             if self.received:
-                # Only rows that may be kept are looked at one by one.
+                # The loop visits only rows that may be kept.
                 offset = self.received[-1] - self.stamps[-1]
                 kept = (received[row:] - self.received[-1] >= EVERY) | (
                     np.abs(received[row:] - stamps[row:] - offset) > MIN_DRIFT
