@@ -64,6 +64,11 @@ def test_the_page_says_how_many_hold_and_how_sure_that_is(store: RunStore) -> No
     assert "c5 Then a 5 2 1 1 50.0 % [15.0 %, 85.0 %] −100 mm +200 mm" in text
 
 
+def test_margins_are_shown_even_if_the_first_execution_is_unknown(store: RunStore) -> None:
+    text = Page(page(store, [None, 0.3, 0.2, -0.1])).text
+    assert "c5 Then a 5 2 1 1 50.0 % [15.0 %, 85.0 %] −100 mm +200 mm" in text
+
+
 def test_the_worst_executions_come_first_with_the_command_that_repeats_them(store: RunStore) -> None:
     found = Page(page(store, [0.3, -0.1, None, -0.2]))
     assert re.findall(r"[✗?] (?:violated|unknown) (e:v -- \d)", found.text) == ["e:v -- 4", "e:v -- 2", "e:v -- 3"]

@@ -64,8 +64,9 @@ def record_run(
         for index, margin in enumerate(margins):
             recording.take(ScenarioStarted(index))
             verdict = "unknown" if margin is None else "holds" if margin > 0 else "violated"
+            unit = "" if margin is None else "m"
             for clause in clauses:
-                recording.take(ClauseJudged(index, clause.line, verdict, margin, "m", None, f"{margin}", None))
+                recording.take(ClauseJudged(index, clause.line, verdict, margin, unit, None, f"{margin}", None))
             recording.take(ScenarioFinished(index, 4.25, 1.5, 0.5))
         recording.end("")
     return place

@@ -156,7 +156,9 @@ def failing_clauses(rows: Iterable[ClauseRow]) -> list[str]:
 def _clause_row(pairs: Sequence[tuple[ExecutionResult, ClauseResult]]) -> ClauseRow:
     first = pairs[0][1]
     margins = [clause.margin for _, clause in pairs if clause.margin is not None]
-    least, middle = (margin(value(margins), first.unit) if margins else "" for value in (min, median))
+    # An unknown verdict has no unit.
+    unit = next((clause.unit for _, clause in pairs if clause.unit), "")
+    least, middle = (margin(value(margins), unit) if margins else "" for value in (min, median))
     found = counts(clause.verdict for _, clause in pairs)
     sentences = dict.fromkeys(plain_sentence(clause.sentence) for _, clause in pairs)
     sentence = next(iter(sentences)) if len(sentences) == 1 else _with_variables(next(iter(sentences)), pairs[0][0])

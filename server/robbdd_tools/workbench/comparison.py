@@ -183,7 +183,9 @@ def _clause_changes(before: ExecutionResult, after: ExecutionResult) -> Iterator
             verdicts = (old and old.verdict, new and new.verdict)
             if shown is not None and verdicts[0] != verdicts[1]:
                 margins = (old and old.margin, new and new.margin)
-                yield ClauseChange(iri, shown.name, *verdicts, *margins, shown.unit, new.reason if new else "")
+                # An unknown verdict has no unit.
+                unit = shown.unit or (old.unit if old else "")
+                yield ClauseChange(iri, shown.name, *verdicts, *margins, unit, new.reason if new else "")
 
 
 def _by_iri(result: ExecutionResult) -> dict[str, list[ClauseResult]]:
