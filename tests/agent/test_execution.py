@@ -151,6 +151,14 @@ def test_a_gripper_without_friction_loses_the_thing_and_says_so() -> None:
     assert found.reason == f"event t:place-end never occurred: {trace.remark}"
 
 
+def test_a_thing_that_is_torn_away_by_what_it_hits_is_lost_with_this_reason() -> None:
+    """Carried at the usual height, a bottle reaches below the rim of a bin."""
+    bottle = "env:bottle1"
+    scene = replace(SCENE, objects=(bottle, BIN, "env:bin2", "env:bench"), agents=("env:ur10",))
+    lost = [to_the_end(execution([pick_place(bottle, agent="env:ur10")], scene, seed)).remark for seed in range(1, 6)]
+    assert [remark for remark in lost if remark.endswith(f" after {bottle} hit {BIN}")]
+
+
 def test_a_thing_that_was_moved_away_is_missed() -> None:
     run = execution([pick_place(CUBE)])
     run.advance_until(lambda trace: trace.event_time("t:pick-start") is not None)

@@ -106,6 +106,19 @@ def test_a_part_that_is_rammed_into_what_it_stands_on_is_listed(press: float, li
     assert [(one.part, one.other) for one in found] == [("part", "floor")] * listed
 
 
+def test_what_a_gripped_part_hits_is_told_apart_from_what_it_was_picked_up_from() -> None:
+    standing = Falling(height=3.0, part=0.05)
+    standing.run(10)
+    standing.run(10, held=("part",))
+    assert standing.forces.hit_since(0, "part") == ()
+    dropped = Falling(height=30.0, part=0.15)
+    dropped.run(40, held=("part",))
+    assert dropped.forces.hit_since(0, "part") == ("floor",)
+    assert dropped.forces.hit_since(0, "arm") == ()
+    dropped.run(20, held=("part",))
+    assert dropped.forces.hit_since(40, "part") == ()
+
+
 def test_what_fingers_press_on_what_they_grip_is_measured() -> None:
     run = execution([pick_place()])
     trace = run.complete(run.advance_until(lambda trace: trace.event_time("t:pick-end") is not None))

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 SLIPPED = 3
 """The gripper has lost the object after this many ticks in a row without grip."""
+HIT_BEFORE = round(0.5 / TICK)
+"""What an object hit at most this many ticks ago may have torn it out of the gripper."""
 DIP = 0.05
 """While the joints move evenly, the tool may sink this far (m) below both ends of its path."""
 LONG = 10.0
@@ -142,7 +144,14 @@ class ArmControl:
                 return
             missing = 0 if self.held is None or self.senses_object(self.held) else missing + 1
             if missing == SLIPPED:
-                raise BehaviourError(f"gripper lost {self.held} at {self.time:.2f} s")
+                raise self.lost()
+
+    def lost(self) -> BehaviourError:
+        """Return the failure of an arm whose object has left the gripper, with what the object hit just before."""
+        forces, held = self.simulation.forces, self.held or ""
+        hit = forces.hit_since(forces.row - HIT_BEFORE, held)
+        after = f" after {held} hit {', '.join(hit)}" if hit else ""
+        return BehaviourError(f"gripper lost {held} at {self.time:.2f} s{after}")
 
     def wait(self, ticks: int) -> Step:
         """Stay in place."""

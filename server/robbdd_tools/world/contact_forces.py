@@ -56,6 +56,7 @@ class ContactForces:
         self._contacts: dict[tuple[str, str, str], _Sum] = {}
         self._ever_gripped: set[Pair] = set()
         self._supports: set[tuple[str, str]] = set()
+        self._first_supports: frozenset[tuple[str, str]] = frozenset()
         self._hold(frozenset())
 
     def measure(self, data: Any) -> None:
@@ -79,6 +80,8 @@ class ContactForces:
         if gripped != self._gripped:
             for _, thing in gripped ^ self._gripped:
                 self._note_supports(data, thing)
+            first = {thing for _, thing in gripped - self._ever_gripped}
+            self._first_supports |= {pair for pair in self._supports if pair[0] in first}
             self._ever_gripped |= gripped
             self._hold(gripped)
         self._row += 1
@@ -97,6 +100,18 @@ class ContactForces:
         """Return the names of the things that an agent has touched since a sample."""
         pairs = ((other, rows) for (one, other), rows in self._peaks.items() if one == agent)
         return tuple(sorted(other for other, rows in pairs if any(one >= row for one in rows)))
+
+    def hit_since(self, row: int, thing: str) -> tuple[str, ...]:
+        """Return what a gripped thing has touched for the first time, or hardest, since a sample.
+
+        The hardest contact comes first. The support from which the thing was first picked up is left out.
+        """
+        found = [
+            (total.peak, other)
+            for (_, part, other), total in self._contacts.items()
+            if part == thing and (part, other) not in self._first_supports and max(total.first, total.highest) >= row
+        ]
+        return tuple(other for _, other in sorted(found, key=lambda one: (-one[0], one[1])))
 
     def peaks(self, size: int) -> Mapping[Pair, FloatArray]:
         """Return the largest force (N) before each of the first ``size`` samples, by pair in contact: (size,)."""

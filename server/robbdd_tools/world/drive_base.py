@@ -129,7 +129,7 @@ class DriveBase:
         self._check(pose, BEHIND, TWISTED, since)
         self._missing = 0 if hand.held is None or hand.senses_object(hand.held) else self._missing + 1
         if self._missing == LOST:
-            raise BehaviourError(f"gripper lost {hand.held} at {hand.time:.2f} s")
+            raise hand.lost()
 
     def _check(self, pose: FloatArray, distance: float, turn: float, since: int) -> None:
         """Stop the base and raise ``BehaviourError`` if it is farther (m, rad) from a pose than given."""
