@@ -11,6 +11,7 @@ import pytest
 
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, Origin
+from robbdd_tools.monitor.without_physics import KINEMATIC
 from robbdd_tools.protocol.specs import ExecutionSpec
 from robbdd_tools.world.errors import SceneError
 from world.worlds import BIN_WS, CUBE, PANDA, pick_place, scenario
@@ -37,13 +38,14 @@ class Nod:
 counter = iter(range(1000))
 
 
-def run(folder: Path, code: str, attribute: str = "Nod", kind: str = "python") -> Execution:
+def run(folder: Path, code: str, attribute: str = "Nod", kind: str = "python", world: str = "") -> Execution:
     module = f"own_behaviour_{next(counter)}"
     (folder / f"{module}.py").write_text(code, encoding="utf-8")
     origin = Origin(str(folder / "run.bddx"), 5, 3)
     name = f"{module}:{attribute}" if kind == "python" else attribute
     execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", kind, name, origin))
-    return Execution(replace(scenario(), execution=execution), [pick_place(CUBE, BIN_WS, PANDA)])
+    spec = replace(scenario(), execution=execution, world=world)
+    return Execution(spec, [pick_place(CUBE, BIN_WS, PANDA)])
 
 
 @pytest.mark.physics
@@ -97,6 +99,49 @@ def test_numbers_that_are_none_end_the_behaviour_with_a_reason(tmp_path: Path, c
     assert not execution.run_behaviour(0)
     assert re.search(words, execution.broken), execution.broken
     assert np.isfinite(execution.trace.positions).all()
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("world", ["", KINEMATIC])
+def test_joints_never_move_faster_than_their_limits_whatever_is_commanded(tmp_path: Path, world: str) -> None:
+    goal = "goal += [-1.0, 0.5, 0.5, 0.5, -1.0, 0.5, 1.0]; self.world.command(goal, 1.0)"
+    jump = NOD.replace("goal[5] += 0.1", goal).replace("self.world.command(self.start + ", "(self.start + ")
+    execution = run(tmp_path, jump.replace("(31 - self.left) / 25), 1.0)", "1.0))"), world=world)
+    robot, limits = execution.simulation.robots[PANDA], np.array([2.175] * 4 + [2.61] * 3)
+    fastest = np.zeros(7)
+
+    def measure() -> None:
+        fastest[:] = np.maximum(fastest, np.abs(execution.simulation.joint_velocities(robot)))
+
+    execution.simulation.watchers.append(measure)
+    assert execution.run_behaviour(0), execution.broken
+    assert (fastest < 1.02 * limits).all(), fastest
+    assert (fastest > 0.9 * limits).all(), fastest
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("world", ["", KINEMATIC])
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ("data.qpos[-7:-4] = [0.5, 0.0, 0.5]", "qpos"),
+        ("data.qvel[-6:-3] = [0.0, 0.0, 3.0]", "qvel"),
+        ("data.xfrc_applied[-1] = 1.0", "xfrc_applied"),
+        ("model.geom_friction[:] = 2.0", "geom_friction"),
+        ("model.opt.gravity[:] = 0.0", "gravity"),
+    ],
+)
+def test_a_behaviour_that_changes_the_simulation_itself_leaves_its_clauses_unknown(
+    tmp_path: Path, world: str, change: str, what: str
+) -> None:
+    execution = run(
+        tmp_path, NOD.replace("self.left -= 1", f"self.left -= 1; self.world._simulation.{change}"), world=world
+    )
+    assert not execution.run_behaviour(0)
+    words = (
+        rf"own_behaviour_\d+:Nod has changed the simulation itself \({what}\): it may only move its arm, by 'command'"
+    )
+    assert re.search(words, execution.broken), execution.broken
 
 
 @pytest.mark.physics

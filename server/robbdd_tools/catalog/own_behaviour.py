@@ -93,7 +93,10 @@ class World(Protocol):
         ...
 
     def command(self, joints: FloatArray, opening: float) -> None:
-        """Set the servos' target joint positions (n,) rad within one tick; ``opening`` is 0 (closed) to 1 (open)."""
+        """Set the servos' target joint positions (n,) rad within one tick; ``opening`` is 0 (closed) to 1 (open).
+
+        A target that is farther away than its joint can move in a tick is approached at the joint's speed limit.
+        """
         ...
 
     def emit(self, event: str) -> None:

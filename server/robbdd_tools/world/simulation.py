@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from collections.abc import Set as AbstractSet
 from functools import cached_property
 from math import isfinite
@@ -19,6 +19,7 @@ from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.holding import Grips
+from robbdd_tools.world.intactness import contents_of
 from robbdd_tools.world.momentary import Velocity, force_between, velocity_of
 from robbdd_tools.world.owners import geom_owners, joint_of_part
 from robbdd_tools.world.recorder import Bodies, Recorder
@@ -130,6 +131,11 @@ class Simulation:
     def state(self) -> FloatArray:
         """The positions of all joints and loose objects, shape (q,)."""
         return self._qpos.copy()
+
+    @property
+    def contents(self) -> Mapping[str, bytes]:
+        """The state and the parameters that only the simulator may change, by the engine's names."""
+        return contents_of(self.model, self.data)
 
     def restore(self, state: FloatArray) -> None:
         """Move everything to the positions of a state, at rest. The recording and the clock do not change."""

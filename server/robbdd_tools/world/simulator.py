@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.trace import EventStamp, Trace
     from robbdd_tools.world.composition import World
@@ -20,7 +22,7 @@ class Simulator(Protocol):
     - observe: ``pose``, ``velocity``, ``tool``, ``holds``, ``joint_positions``, ``joint_velocities``, ``joint_of``,
       ``contact_force``, ``gravity``, ``trace``, and ``seen`` as a robot with faults would.
     - command: ``command``, and ``drive`` for mobile bases; ``targets`` are the goals of an arm's joints.
-    - snapshot: ``state`` and ``restore``.
+    - snapshot: ``state`` and ``restore``; ``contents`` shows whether anything else has changed the world.
     """
 
     world: World
@@ -110,6 +112,14 @@ class Simulator(Protocol):
     @property
     def state(self) -> FloatArray:
         """The positions of all joints and loose objects, shape (q,), from which a picture is drawn."""
+        ...
+
+    @property
+    def contents(self) -> Mapping[str, bytes]:
+        """The state and the parameters that only the simulator may change, by the simulator's names.
+
+        If they differ before and after a call of users' code, the code has changed the world around its interface.
+        """
         ...
 
     def restore(self, state: FloatArray) -> None:

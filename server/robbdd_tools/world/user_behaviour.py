@@ -12,7 +12,9 @@ from robbdd_tools.base.articulation import Opening
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.arm_kinematics import arm_of
+from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, UserError, at
+from robbdd_tools.world.intactness import changed
 from robbdd_tools.world.motion import frame_of, tool_pose
 
 if TYPE_CHECKING:
@@ -149,13 +151,19 @@ class AgentWorld:
             return None
 
     def command(self, joints: FloatArray, opening: float) -> None:
-        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for invalid values."""
+        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for invalid values.
+
+        No target moves faster than its joint's speed limit: drives of real arms do not, either.
+        """
         model = self._robot.model
         targets = np.asarray(joints, dtype=float)
         if targets.shape != self.joints.shape or not np.all(np.isfinite(targets)):
             raise ValueError(f"joints must be {len(self.joints)} finite numbers, not {joints!r:.200}")
         if not np.isfinite(opening):
             raise ValueError(f"opening must be a number from 0 to 1, not {opening!r}")
+        here = self._simulation.targets(self._robot)
+        farthest = np.array(model.velocity_limits) * TICK
+        targets = here + np.clip(targets - here, -farthest, farthest)
         share = min(1.0, max(0.0, float(opening)))
         control = model.gripper_closed + share * (model.gripper_open - model.gripper_closed)
         self._simulation.command(self._robot, targets, control)
@@ -163,6 +171,16 @@ class AgentWorld:
     def emit(self, event: str) -> None:
         """Record an event of the behaviour at the current time."""
         self._emit(event)
+
+    def watched(self, name: str, code: Callable[..., Any], *arguments: Any) -> Any:
+        """Return the result of users' code; raises ``UserCodeError``, also if it changes the world but by commands."""
+        before = self._simulation.contents
+        answer = call_user_code(name, code, *arguments)
+        around = changed(before, self._simulation.contents)
+        if around:
+            what = f"{name} has changed the simulation itself ({', '.join(around)})"
+            raise refused(name, f"{what}: it may only move its arm, by 'command'", definition_of(code))
+        return answer
 
 
 def run_user_behaviour(
@@ -176,8 +194,8 @@ def run_user_behaviour(
     model = "" if implementation.origin is None else implementation.origin.file
     try:
         own: UserBehaviour = call_user_code(name, load_attribute(name, model))
-        call_user_code(name, own.reset, world, behaviour, arguments)
-        while not _is_over(name, own):
+        world.watched(name, own.reset, world, behaviour, arguments)
+        while not _is_over(name, own, world):
             yield
     except UserCodeError as error:
         if isinstance(error.__cause__, BehaviourFailed):
@@ -186,9 +204,9 @@ def run_user_behaviour(
         raise UserError(f"{at(implementation.origin)}{error} at {world.time:.2f} s", fault) from error
 
 
-def _is_over(name: str, own: UserBehaviour) -> bool:
+def _is_over(name: str, own: UserBehaviour, world: AgentWorld) -> bool:
     """Execute the behaviour's next tick. ``None`` means that it continues; other non-boolean answers are refused."""
-    answer: Any = call_user_code(name, own.step)
+    answer: Any = world.watched(name, own.step)
     if answer is None or isinstance(answer, bool | np.bool_):
         return bool(cast(Any, answer))
     message = f"{name}.step must return True or False, not {answer!r:.60}"
