@@ -127,3 +127,15 @@ def test_a_product_with_the_inverse_is_no_rotation(poses: list[tuple[float, ...]
     turn = np.array(poses[0][3:]) / np.linalg.norm(poses[0][3:])
     found = product(turn[None], turn[None] * (1, -1, -1, -1))
     assert found[0] == pytest.approx([1, 0, 0, 0], abs=1e-9)
+
+
+def test_a_frame_without_orientation_has_a_place_and_gives_none_to_what_is_away_from_it() -> None:
+    times, turned = np.array([0.0, 1.0]), np.tile((1.0, 0.0, 0.0, 0.0), (2, 1))
+    tracks = {
+        "part": Track("map", times, np.array([[1.0, 0, 0], [3, 0, 0]]), np.full((2, 4), np.nan)),
+        "pin": Track("part", times, np.array([[0.0, 0, 0.1], [0, 0, 0.1]]), turned),
+    }
+    place, turn = poses_at("part", "map", tracks, np.array([0.5]), 2.0)
+    assert place.tolist() == [[2.0, 0.0, 0.0]]
+    assert np.isnan(turn).all()
+    assert np.isnan(poses_at("pin", "map", tracks, np.array([0.5]), 2.0)[0]).any()

@@ -131,6 +131,11 @@ class Frames:
             if found is None:
                 return None
             place, turn = found
+            if not any(offset := self._cast.objects[element].frame):
+                return found
+            if np.isnan(turn[~np.isnan(place).any(axis=1)]).any():
+                away = f"whose centre is {1000 * float(np.linalg.norm(offset)):.0f} mm from its frame"
+                self._remarks.append(f"the log does not say how {element}, {away}, is turned: its place is unknown")
             return place - rotated(turn, np.tile(self._cast.objects[element].frame, (len(times), 1))), turn
         pose = self._stated_pose(element, lambda cast, name: cast.pose(name))
         if pose is None:

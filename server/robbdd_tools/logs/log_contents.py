@@ -23,7 +23,7 @@ class Track:
 
     - ``times``: (n,) s since the begin of the log, increasing.
     - ``positions``: (n, 3) m.
-    - ``orientations``: (n, 4) unit quaternions (w, x, y, z).
+    - ``orientations``: (n, 4) unit quaternions (w, x, y, z), NaN where only the position was recorded.
     - ``static``: true if the frame never moves relative to its parent. Then there is one pose, valid at all times.
     - ``later``: the tracks of the frame in its later parents, if it changes its parent, as a grasped object may do. A
       track has a pose that is not a number at the time at which another parent follows.

@@ -8,7 +8,8 @@ joint). A title may end with another unit in brackets: ``elbow [deg]``. A row ma
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 WORLD = "world"
+UNKNOWN_TURN = (nan, nan, nan, nan)
+MAX_LISTED = 8
 DELIMITERS = (",", ";", "\t")
 
 
@@ -67,6 +70,7 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
     Raises ``UnreadableLog`` with the line of a cell that is not a number.
     """
     builder, joints, texts = TrackBuilder(), JointBuilder(), list[tuple[int, str, str]]()
+    unturned: dict[str, None] = {}
     try:
         for row in _rows(path, columns or {}):
             time = round(row.number("time") * 1e9)
@@ -75,7 +79,8 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
             if row.text("frame"):
                 x, y, z = (row.number(name) for name in POSITION)
                 turned = any(row.text(name) for name in TURN)
-                w, a, b, c = (row.number(name) for name in TURN) if turned else (1.0, 0.0, 0.0, 0.0)
+                w, a, b, c = (row.number(name) for name in TURN) if turned else UNKNOWN_TURN
+                unturned |= {} if turned else {row.text("frame"): None}
                 builder.add(row.text("frame"), row.text("parent") or WORLD, time, (x, y, z), (w, a, b, c))
             known = row.joints()
             joints.add(path.name, time, list(known), list(known.values()))
@@ -84,9 +89,20 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
     stamps = [*builder.bounds(), *joints.bounds(), *(time for time, _, _ in texts)]
     begin, end = min(stamps, default=0), max(stamps, default=0)
     found = tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, topic, text in sorted(texts))
-    remarks: list[str] = []
+    remarks = _without_turn(unturned)
     tracks = builder.tracks(begin, remarks)
     return LogContents(tracks, found, (end - begin) / 1e9, (*remarks, *joints.remarks), joints=joints.tracks(begin))
+
+
+def _without_turn(frames: Collection[str]) -> list[str]:
+    """Return the remark on frames of which at least one row has no orientation."""
+    if not frames:
+        return []
+    named = [f"'{one}'" for one in frames]
+    listed = ", ".join(named[:MAX_LISTED]) + (f" and {len(named) - MAX_LISTED} more" if named[MAX_LISTED:] else "")
+    return [
+        f"the table has no orientation of {listed}: clauses that depend on it are unknown; qw, qx, qy and qz state it"
+    ]
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:

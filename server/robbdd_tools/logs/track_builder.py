@@ -45,7 +45,7 @@ class TrackBuilder:
         *,
         static: bool = False,
     ) -> None:
-        """Add a pose: position in m, orientation as (w, x, y, z)."""
+        """Add a pose: position in m, orientation as (w, x, y, z), four NaN if it was not recorded."""
         poses = self._poses(frame, parent)
         poses.static = poses.static and static
         poses.rows.append(time, (*position, *orientation))
@@ -206,4 +206,6 @@ class _Poses:
 
 
 def _is_pose(values: FloatArray) -> npt.NDArray[np.bool_]:
-    return np.isfinite(values).all(axis=1) & (np.linalg.norm(values[:, 3:], axis=1) > MIN_LENGTH)
+    turns = values[:, 3:]
+    turned = np.isfinite(turns).all(axis=1) & (np.linalg.norm(turns, axis=1) > MIN_LENGTH)
+    return np.isfinite(values[:, :3]).all(axis=1) & (turned | np.isnan(turns).all(axis=1))

@@ -32,7 +32,8 @@ def poses_at(
 
     The result has the positions (n, 3) m and the orientations (n, 4) as (w, x, y, z). A pose is interpolated between
     two recorded ones in the same parent that are at most ``max_gap`` (s) apart. It is NaN where they are further apart,
-    and before the first and after the last recorded pose. Raises ``Unconnected``.
+    and before the first and after the last recorded pose. Where an orientation was not recorded, the orientation is NaN
+    and so is the position of a frame that depends on it. Raises ``Unconnected``.
     """
     changed = next((one for one in reached((frame, reference), tracks) if tracks[one].later), None)
     if changed is not None:
@@ -60,7 +61,7 @@ def _in_each_parent(
         except Unconnected as problem:
             problems.append(problem)
             continue
-        missing = np.isnan(position).any(axis=1) | np.isnan(turn).any(axis=1)
+        missing = np.isnan(position).any(axis=1)
         position[missing], turn[missing] = place[missing], rotation[missing]
     if len(problems) == len(alternatives):
         raise problems[0]
@@ -115,9 +116,10 @@ def _along(
     frames: list[str], tracks: Mapping[str, Track], times: FloatArray, max_gap: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the poses of a chain's first frame relative to the parent of its last frame."""
-    position = np.zeros((len(times), 3))
-    turn = np.tile((1.0, 0.0, 0.0, 0.0), (len(times), 1))
-    for frame in frames:
+    if not frames:
+        return np.zeros((len(times), 3)), np.tile((1.0, 0.0, 0.0, 0.0), (len(times), 1))
+    position, turn = _interpolated(tracks[frames[0]], times, max_gap)
+    for frame in frames[1:]:
         step, rotation = _interpolated(tracks[frame], times, max_gap)
         position, turn = step + rotated(rotation, position), product(rotation, turn)
     return position, turn

@@ -53,7 +53,7 @@ class WindowEvidence:
 
         Raises ``KeyError`` and ``Unobserved``, like ``position``.
         """
-        return self._observed(name, self.trace.orientations[self._rows, self.trace.column(name)], self.times)
+        return self._observed(name, self._turns(name, self._rows), self.times)
 
     def velocity(self, name: str) -> FloatArray:
         """Return the mean velocity of an element since the previous sample, m/s, shape (n, 3). Raises ``KeyError``.
@@ -78,7 +78,7 @@ class WindowEvidence:
         need_contacts(self.trace.settings)
         self.need_motion(name)
         rows, extra = self._with_neighbour()
-        turns, times = self.trace.orientations[rows, self.trace.column(name)], self.trace.times[rows]
+        turns, times = self._turns(name, rows), self.trace.times[rows]
         if len(times) < 2:
             return np.full(1, np.nan)
         # The distance of two unit quaternions is twice the sine of a quarter of the angle; q and -q are the same turn.
@@ -106,7 +106,18 @@ class WindowEvidence:
 
         Raises ``KeyError`` and ``Unobserved``.
         """
-        return self._observed(name, self.trace.orientations[self._rows_at(times), self.trace.column(name)], times)
+        return self._observed(name, self._turns(name, self._rows_at(times)), times)
+
+    def _turns(self, name: str, rows: slice | NDArray[np.intp]) -> FloatArray:
+        """Return the orientations at some rows, NaN where the element was not observed at all.
+
+        Raises ``Unobserved`` if a log has only the position at one of them.
+        """
+        column = self.trace.column(name)
+        turns = self.trace.orientations[rows, column]
+        if self.trace.log and (np.isnan(turns).any(axis=1) & ~np.isnan(self.trace.positions[rows, column, 0])).any():
+            raise Unobserved(f"the log does not say how {name} is turned")
+        return turns
 
     def _observed(self, name: str, values: FloatArray, times: FloatArray) -> FloatArray:
         """Return the values (n, k) of an element at some times (n,). Raises ``Unobserved`` if a value is missing.
@@ -115,9 +126,8 @@ class WindowEvidence:
         """
         if self.trace.log and (missing := np.isnan(values).any(axis=1)).any():
             unseen = np.isnan(self.trace.positions[:, self.trace.column(name)].sum(axis=1))
-            raise Unobserved(
-                f"{name} was not observed {gap_around(self.trace.times, unseen, float(times[int(np.argmax(missing))]))}"
-            )
+            time = float(times[int(np.argmax(missing))])
+            raise Unobserved(f"{name} was not observed {gap_around(self.trace.times, unseen, time)}")
         return values
 
     def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:

@@ -26,6 +26,8 @@ EVERY = 4
 PERIOD = 1 / 16
 """Seconds between two pictures of observations."""
 WORLD = "world"
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+"""Orientation (w, x, y, z) with which a thing is drawn whose orientation a log lacks."""
 
 
 def views(simulation: Simulation, trace: Trace, *, last: bool = False) -> Iterator[View]:
@@ -66,7 +68,8 @@ def drawn_bodies(model: Any) -> dict[int, str]:
 def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]:
     """Yield the views of a trace of observations. ``model`` is a compiled model that has a body for each object.
 
-    An object is drawn where it was last observed; objects that were never observed are left out.
+    An object is drawn where it was last observed, upright if the log does not say how it is turned; objects that were
+    never observed are left out.
     """
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
@@ -86,6 +89,7 @@ def observed_views(model: Any, regions: Regions, trace: Trace) -> Iterator[View]
         np.stack([values[row, column] for row, column in zip(known, columns, strict=True)], axis=1).round(DIGITS)
         for values in (trace.positions, trace.orientations)
     )
+    turns[np.isnan(turns).any(axis=2)] = UPRIGHT
     for time, place, turn in zip(trace.times[rows].tolist(), places, turns, strict=True):
         yield time, "/tf", {"transforms": _frames(time, seen, place.tolist(), turn.tolist())}
 
@@ -106,7 +110,7 @@ def _is_seen(trace: Trace, name: str) -> bool:
 
 def _last_known(trace: Trace, column: int) -> NDArray[np.intp]:
     """Return for each sample the last one at which a body was observed, or else the first one after it, shape (n,)."""
-    missing = np.isnan(trace.positions[:, column]).any(axis=1) | np.isnan(trace.orientations[:, column]).any(axis=1)
+    missing = np.isnan(trace.positions[:, column]).any(axis=1)
     rows = np.maximum.accumulate(np.where(missing, -1, np.arange(len(trace.times))))
     return np.where(rows < 0, int(np.argmin(missing)), rows)
 
