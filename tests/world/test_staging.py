@@ -216,3 +216,19 @@ def test_an_object_with_an_inertia_that_no_body_can_have_is_refused(tmp_path: Pa
     thing = Realisation(CUBE, (replace(made, format="urdf"),))
     with pytest.raises(SceneError, match=r"cell\.scenex:7:11: .*A \+ B >= C"):
         world(instance(elements=(thing,)))
+
+
+BEAM = '<mujoco><worldbody><body name="beam"><geom type="box" size=".1 .25 .02"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(("height", "is_apart"), [(0.12, True), (0.40, False)])
+def test_a_thing_without_a_place_lies_beside_what_stands_fixed_and_may_lie_below_it(
+    height: float, is_apart: bool, tmp_path: Path
+) -> None:
+    beam = replace(SCENE, objects=(*SCENE.objects, "env:beam"))
+    staged = instance(
+        link("x:g.beam.mid", (0.45, 0.0, height)), elements=(file(tmp_path, "env:beam", BEAM, ("x:g.beam", "beam")),)
+    )
+    places = [world(staged, seed, beam).poses[CUBE].position for seed in range(30)]
+    outside = [abs(x - 0.45) > 0.1157 or abs(y) > 0.2657 for x, y, _ in places]
+    assert all(outside) is is_apart

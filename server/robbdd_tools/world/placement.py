@@ -15,6 +15,7 @@ from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.fixed_obstacles import Obstacle, fixed_obstacles
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
@@ -61,7 +62,8 @@ class _Field:
     """A rectangle to draw positions from: centre and half edges (m, world frame), and height (m) of objects there.
 
     ``skew`` bounds the rotation (rad). ``gap`` and ``wall_gap`` are distances (m) to other objects and to bins; in a
-    bin there is no ``wall_gap``. ``base`` is the base of the robot that works there.
+    bin there is no ``wall_gap``. ``base`` is the base of the robot that works there. ``obstacles`` are fixed shapes to
+    keep clear of.
     """
 
     center: tuple[float, float]
@@ -71,6 +73,7 @@ class _Field:
     gap: float
     wall_gap: float | None
     base: Pose
+    obstacles: tuple[Obstacle, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,8 +268,12 @@ def _fields(
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
     if area is None:
         raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
-    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base)
-    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base)
+    obstacles = fixed_obstacles(cast.objects, poses, carrier)
+    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles)
+    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles)
+    if obstacles:
+        # Their boxes may be larger than they are. Whether anything overlaps is checked later.
+        yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base)
 
 
 def _flat(half: Vector, yaw: float) -> Vector:
@@ -290,13 +297,14 @@ def _draw(
     radius = footprint(model)
     rejected = 0
     for field in fields:
-        wall_gap = field.wall_gap
+        wall_gap, top = field.wall_gap, field.height + 2.0 * model.rest_height
         for _ in range(TRIES):
             dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
             x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
             clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
             apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
-            if clear and apart and abs(bearing(field.base, x, y)) <= BEARING:
+            blocked = any(one.is_near(x, y, radius + TOUCHING, field.height, top) for one in field.obstacles)
+            if clear and apart and not blocked and abs(bearing(field.base, x, y)) <= BEARING:
                 return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
             rejected += 1
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
