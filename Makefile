@@ -35,7 +35,7 @@ test-editors: $(READY) $(CLIENT_READY) setup-editors | $(filter test-client,$(MA
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh
 	$(MAKE) --no-print-directory playground
-	node --test --test-reporter=spec tests/editors/playground/playground.test.mjs
+	node --test --test-reporter=spec tests/editors/playground/playground.test.mjs tests/editors/playground/search_order.test.mjs
 
 # Installs the editors and Chromium where they are missing.
 setup-editors:

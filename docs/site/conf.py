@@ -17,6 +17,7 @@ extensions = ["myst_parser"]
 highlight_language = "none"
 exclude_patterns = ["schemas"]
 html_extra_path = [str(folder) for folder in (Path(__file__).parents[2] / "build" / "extra",) if folder.is_dir()]
+html_search_scorer = str(Path(__file__).parent / "search_order.js")
 html_theme = "furo"
 html_title = "RobBDD workbench"
 html_copy_source = False

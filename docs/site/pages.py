@@ -82,7 +82,7 @@ KINDS = (".bdd", ".scene", ".bddx", ".scenex", ".ktree")
 
 def assemble(folder: Path) -> None:
     """Write the pages and the pictures of the site into an empty folder."""
-    shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("site", "__pycache__", "ci"))
+    shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("site", "__pycache__"))
     for page in sorted(DOCS.rglob("*.md")):
         place = page.relative_to(DOCS)
         (folder / place).write_text(linked(page, place), encoding="utf-8")
@@ -140,7 +140,7 @@ def site_place(target: Path) -> Path | None:
         return Path(target.name)
     if target == ROOT / "README.md":
         return Path("index.md")
-    if target.is_relative_to(DOCS) and target.is_file() and target.parent.name != "ci":
+    if target.is_relative_to(DOCS) and target.is_file():
         return target.relative_to(DOCS)
     return None
 
