@@ -121,3 +121,15 @@ def test_links_that_collide_as_they_look_are_named(tmp_path: Path, capsys: pytes
     assert "links without collision shapes, which collide as their visual shapes: arm1\n" in capsys.readouterr().out
     main(["view", "--robot", str(write(tmp_path, strangers.SCARA)), "-o", str(tmp_path / "arm.png")])
     assert "collide as" not in capsys.readouterr().out
+
+
+def test_the_range_of_a_velocity_servo_is_the_speed_of_its_joint(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    servo = '<velocity joint="rot" kv="5" gear="2" ctrlrange="-3 4"/>'
+    arm = strangers.SCARA.replace('<velocity joint="rot" kv="5"/>', servo)
+    main(["view", "--robot", str(write(tmp_path, arm)), "-o", str(tmp_path / "arm.png")])
+    said = capsys.readouterr().out
+    assert "        velocity: (1, 1, 1, 1.5) rad/s" in said
+    assert re.search(r"  rot +rotating .* 1\.5 rad/s +", said)
+    assert said.count("(assumed)") == 3

@@ -82,10 +82,25 @@ def _read_made(path: Path) -> Any:
     return _read(str(path))
 
 
-def velocity_limits(source: ModelSource, joints: Sequence[str], default: float) -> tuple[float, ...]:
-    """Return the speed limits (rad/s, m/s) of joints in a URDF file, or ``default`` for a joint without a limit."""
+def velocity_limits(source: ModelSource, spec: Any, joints: Sequence[str], default: float) -> tuple[float, ...]:
+    """Return the speed limits (rad/s, m/s) of joints, or ``default`` for a joint without a limit.
+
+    They are those of a URDF file, or the ``ctrlrange`` of velocity servos in ``spec``, the description of the file.
+    """
     stated = speeds(path_of(source)) if source.kind in ("file", "ros") else {}
-    return tuple(stated.get(joint) or default for joint in joints)
+    servos = _servo_speeds(spec)
+    return tuple(stated.get(joint) or servos.get(joint) or default for joint in joints)
+
+
+def _servo_speeds(spec: Any) -> dict[str, float]:
+    """Return the largest speed (rad/s, m/s), in both directions, that a velocity servo of a joint can be given."""
+    found: dict[str, float] = {}
+    for one in spec.actuators:
+        is_servo = one.biastype == mujoco.mjtBias.mjBIAS_AFFINE and one.biasprm[1] == 0.0 and one.gainprm[0] > 0.0
+        low, high = (float(bound) for bound in one.ctrlrange)
+        if one.trntype == mujoco.mjtTrn.mjTRN_JOINT and is_servo and one.biasprm[2] < 0.0 and low < 0.0 < high:
+            found[str(one.target)] = min(-low, high) / abs(float(one.gear[0]) or 1.0)
+    return found
 
 
 def path_of(source: ModelSource) -> Path:

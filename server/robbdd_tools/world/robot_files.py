@@ -99,6 +99,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     parts.name_geoms()
     gripper = GripperReader(parts).read()
     tool = tool_of(spec, source, arm.tool, gripper, chain[-1])
+    velocity = arm.velocity or velocity_limits(source, spec, joints, SPEED)
     _servos(spec, joints)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
@@ -106,7 +107,6 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     model = compiled(spec, source)
     turn = UPRIGHT if tilt is None else tilt.rotation
     tilt_model(model, turn)
-    velocity = arm.velocity or velocity_limits(source, joints, SPEED)
     home = arm.home or find_home(
         model,
         source,

@@ -18,7 +18,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.mobile_base import base_of
-from robbdd_tools.world.model_files import path_of, velocity_limits
+from robbdd_tools.world.model_files import load, path_of, velocity_limits
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.srdf_semantics import file_of
 from robbdd_tools.world.urdf_files import impossible_inertias
@@ -134,7 +134,7 @@ def _bodies(model: Any, name: str) -> list[int]:
 
 
 def _joints(model: Any, name: str, robot: RobotModel, source: ModelSource | None) -> Iterator[list[str]]:
-    written = velocity_limits(source, robot.joints, 0.0) if source is not None else robot.velocity_limits
+    written = velocity_limits(source, load(source), robot.joints, 0.0) if source is not None else robot.velocity_limits
     for number, (joint, is_sliding) in enumerate(zip(robot.joints, slides(model, name, robot), strict=True)):
         found = model.joint(f"{name}/{joint}")
         unit = "m" if is_sliding else "rad"
