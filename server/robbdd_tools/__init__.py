@@ -6,6 +6,7 @@ use, so that importing the package stays cheap.
 
 from __future__ import annotations
 
+import warnings
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -163,7 +164,14 @@ __all__ = [
 ]
 
 
+_REPLACED: dict[str, str] = {}
+"""Each name that goes in the next version, and the name that replaces it."""
+
+
 def __getattr__(name: str) -> Any:
+    if (new := _REPLACED.get(name)) is not None:
+        warnings.warn(f"{__name__}.{name} goes in the next version: write {new}", DeprecationWarning, stacklevel=2)
+        name = new
     if name not in _HOMES:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -28,6 +28,7 @@ from robbdd_tools.commands.falsify_arguments import add_falsify
 from robbdd_tools.commands.lost_output import output_may_be_lost
 from robbdd_tools.commands.mutate_arguments import add_mutate
 from robbdd_tools.commands.output import fail, print_note
+from robbdd_tools.commands.replaced_options import allow_replaced
 from robbdd_tools.commands.run_arguments import (
     allow_run,
     allow_scenex,
@@ -197,6 +198,7 @@ def argument_parser() -> argparse.ArgumentParser:
     completion.set_defaults(command=_completion)
     _allow_refusal(run, *stored, *studies, mutated, searched, view, dap)
     _allow_hosts(check, graph, gherkin, run, mutated, imported, query)
+    allow_replaced(parser)
     return parser
 
 

@@ -145,6 +145,13 @@ def test_a_name_may_go_after_a_version_with_a_warning() -> None:
     assert list(faults({"load": []}, {}, module)) == []
 
 
+def test_a_replaced_name_of_the_package_is_the_new_one_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robbdd_tools, "_REPLACED", {"open_model": "load"})
+    assert list(faults({"open_model": ["path!"]}, {}, robbdd_tools)) == []
+    with pytest.warns(DeprecationWarning, match=r"robbdd_tools\.open_model goes in the next version: write load"):
+        assert robbdd_tools.__getattr__("open_model") is robbdd_tools.load
+
+
 def test_the_page_on_upgrading_states_what_this_test_enforces() -> None:
     page = (DOCS / "upgrading.md").read_text(encoding="utf-8")
     assert "names in `robbdd_tools.__all__`" in page
