@@ -303,6 +303,7 @@ SYSTEM_HOMES = {
     "base.locks",
     "base.renames",
     "base.user_settings",
+    "base.graphics",
     "run.pictures",
 }
 

@@ -19,8 +19,8 @@ from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.shared_executions import calls_of
 from robbdd_tools.agent.video import NoVideo, write_video
 from robbdd_tools.agent.violation_states import ViolationStates
+from robbdd_tools.base.graphics import CHOICE, KEPT, advice, back_ends, without_graphics
 from robbdd_tools.protocol.messages import Execute, encode
-from robbdd_tools.run.pictures import advice, back_ends
 from robbdd_tools.world.png import SIGNATURE, write_png
 from robbdd_tools.world.viewer import NoViewer, Viewer
 from world.worlds import BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
@@ -181,9 +181,13 @@ def test_a_window_that_cannot_be_opened_leaves_the_simulation_alone(monkeypatch:
 def test_each_system_has_back_ends_of_its_own(
     monkeypatch: pytest.MonkeyPatch, platform: str, names: tuple[str, ...], word: str
 ) -> None:
-    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    for variable in (CHOICE, KEPT):
+        monkeypatch.delenv(variable, raising=False)
     monkeypatch.setattr(sys, "platform", platform)
     assert back_ends() == names
     assert word in advice()
-    monkeypatch.setenv("MUJOCO_GL", "glfw")
+    monkeypatch.setenv(CHOICE, "glfw")
+    assert back_ends() == ("glfw",)
+    without_graphics()
+    assert os.environ[CHOICE] == "disable"
     assert back_ends() == ("glfw",)

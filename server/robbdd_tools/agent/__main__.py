@@ -12,6 +12,7 @@ import sys
 from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.descendants import adopt_orphans
+from robbdd_tools.base.graphics import without_graphics
 from robbdd_tools.base.processes import on_end_request
 
 
@@ -28,8 +29,8 @@ def _main() -> int:
     orders, messages = reserve_channel()
     adopt_orphans()
     install()
-    # Execution needs no graphics: a broken graphics back end must not prevent loading the engine.
-    os.environ["MUJOCO_GL"] = "disable"
+    # Only pictures for users' behaviours need graphics, and another process renders them.
+    without_graphics()
     # Install the signal handlers before the slow imports.
     from robbdd_tools.agent.clause_debugger import begin_pauses
     from robbdd_tools.agent.execute_requests import read_requests

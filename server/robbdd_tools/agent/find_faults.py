@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.graphics import without_graphics
 from robbdd_tools.base.limits import SCENE_MEMORY, SCENE_SECONDS
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import limit_memory, limit_processor_time
@@ -50,8 +51,7 @@ def answer_instances(answer: Callable[[list[SceneInstance]], list[dict[str, Any]
     # A model in an opened folder may demand any amount of memory or time.
     limit_memory(SCENE_MEMORY.value())
     limit_processor_time(SCENE_SECONDS.value())
-    # Nothing is rendered: a broken graphics back end must not prevent loading the engine.
-    os.environ["MUJOCO_GL"] = "disable"
+    without_graphics()
     with os.fdopen(requests, encoding="utf-8") as stream:
         request = json.load(stream)
     use_unsaved({Path(path): text for path, text in request["sources"].items()})

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.base.file_names import safe_stem
+from robbdd_tools.base.graphics import NO_GRAPHICS
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.run_folder import thumbnail_file
 from robbdd_tools.world.errors import SceneError
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.violation_states import ViolationState
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 
-FAILED, NO_GRAPHICS = 2, 3
+FAILED = 2
 MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
 USAGE = (
     "usage: python -m robbdd_tools.agent.render_run RUN_FOLDER "

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.graphics import NO_GRAPHICS
 from robbdd_tools.catalog.executable import ModelSource, Realisation, SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.specs import SceneSpec
@@ -18,7 +19,7 @@ from robbdd_tools.world.errors import SceneError
 if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
-FAILED, NO_GRAPHICS = 2, 3
+FAILED = 2
 NAME = "view:arm"
 """Name of the agent in the displayed world."""
 

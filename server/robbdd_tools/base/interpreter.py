@@ -23,6 +23,8 @@ from robbdd_tools.base.isolation import INHERITED, SEARCHED
 from robbdd_tools.base.processes import Ending, own_group
 
 PACKAGE_ROOT = Path(__file__).resolve().parents[2]
+Module = subprocess.Popen[str]
+"""A module of RobBDD that runs in another process."""
 STARTED_IN = "ROBBDD_STARTED_IN"
 """Name of an environment variable. Its value is the working directory of the process that started this one."""
 _DROPPED = (SEARCHED, INHERITED, "PYTHONINSPECT", "PYTHONSTARTUP")
@@ -53,7 +55,7 @@ def run_for(
 
 def start(
     module: str, *arguments: str, folder: Path, log: IO[bytes] | None, more: Mapping[str, str] | None = None
-) -> subprocess.Popen[str]:
+) -> Module:
     """Start a module of RobBDD in ``folder``. It communicates over its standard streams and writes its log to ``log``.
 
     ``more`` are additional environment variables. The process is the leader of a process group (see ``own_group``).

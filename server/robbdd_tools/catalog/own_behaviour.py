@@ -10,6 +10,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from robbdd_tools.catalog.api import Arguments, FloatArray
 
 
@@ -72,6 +75,22 @@ class World(Protocol):
         """The sum of the contact forces (N) between two objects or agents now; 0 between objects that lie still.
 
         Raises an error in the kinematic world, which has no forces. For objects in a gripper, ask with the agent.
+        """
+        ...
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The names of the cameras in the files of arms and scenes; those of an arm begin with its name and ``/``."""
+        ...
+
+    def picture(
+        self, camera: str | tuple[FloatArray, FloatArray], size: tuple[int, int] = (320, 240)
+    ) -> NDArray[np.uint8]:
+        """The pixels (height, width, 3), red, green and blue, of what a camera sees now; ``size`` is (width, height).
+
+        ``camera`` is one of ``cameras``, or a position and the point that a camera there looks at, (3,) m each, with a
+        vertical field of view of 45°. The same state gives the same pixels on one machine. Raises ``KeyError`` for
+        an unknown camera, ``ValueError`` for an invalid argument, and an error if nothing here can render.
         """
         ...
 

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.base.files import load_text
+from robbdd_tools.base.graphics import CHOICE, advice, back_ends
 from robbdd_tools.base.interpreter import run_for
 from robbdd_tools.base.processes import Ending, describe_exit
 from robbdd_tools.base.scaffold import begin_project
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands.installation import REINSTALL, SECONDS, Unavailable
 from robbdd_tools.run.database import DamagedDatabase, DatabaseProblem, inspect
-from robbdd_tools.run.pictures import advice, back_ends
 from robbdd_tools.run.store import RESULTS, NoSuchRun, StoredRun, store_beside
 
 EXAMPLE = "pickplace"
@@ -83,7 +83,7 @@ def rendering(folder: Path) -> str:
     failures: list[str] = []
     for back_end in back_ends():
         picture = folder.with_name(f"{back_end}.png")
-        done = _robbdd("view", folder / MODEL, "-o", picture, more={"MUJOCO_GL": back_end})
+        done = _robbdd("view", folder / MODEL, "-o", picture, more={CHOICE: back_end})
         if done.code == 0 and picture.is_file():
             return f"{back_end}, {picture.stat().st_size} bytes of PNG"
         failures.append(f"{back_end}: {_last_line(done)}")

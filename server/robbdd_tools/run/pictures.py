@@ -7,39 +7,14 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from robbdd_tools.base.graphics import CHOICE, NO_GRAPHICS, back_ends, nothing_renders
 from robbdd_tools.base.interpreter import run
 
-NO_GRAPHICS = 3
-"""Exit code of the rendering process if its back end does not work."""
 MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
 
 
 class NoPictures(Exception):
     """Pictures cannot be rendered; the message gives the reason and what to do."""
-
-
-def back_ends() -> tuple[str, ...]:
-    """Return the values of ``MUJOCO_GL`` that can render without a display, best first.
-
-    If ``MUJOCO_GL`` is already set, return only its value.
-    """
-    chosen = os.environ.get("MUJOCO_GL")
-    if chosen:
-        return (chosen,)
-    match sys.platform:
-        case "win32":
-            return ("wgl",)
-        case "darwin":
-            return ("cgl", "glfw")
-        case _:
-            return ("egl", "osmesa")
-
-
-def advice() -> str:
-    """Return what to do when no back end works."""
-    if sys.platform in ("win32", "darwin"):
-        return "install the graphics driver and run this command in a desktop session"
-    return "install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), or set MUJOCO_GL=glfw where there is a display"
 
 
 def no_display() -> str:
@@ -83,25 +58,21 @@ def render_robot(arm: str, output: Path) -> tuple[list[str], str]:
     """
     tried: list[str] = []
     for back_end in back_ends():
-        done = run("robbdd_tools.agent.show_robot", arm, str(output.absolute()), more={"MUJOCO_GL": back_end})
+        done = run("robbdd_tools.agent.show_robot", arm, str(output.absolute()), more={CHOICE: back_end})
         if done.returncode == 0:
             return done.stdout.splitlines(), ""
         said = _last_line(done.stderr, done.returncode)
         if done.returncode != NO_GRAPHICS:
             raise NoPictures(said)
         tried.append(f"{back_end}: {said}")
-    done = run("robbdd_tools.agent.show_robot", arm, "-", more={"MUJOCO_GL": "disable"})
+    done = run("robbdd_tools.agent.show_robot", arm, "-", more={CHOICE: "disable"})
     if done.returncode != 0:
         raise NoPictures(_last_line(done.stderr, done.returncode))
-    return done.stdout.splitlines(), _nothing_renders(tried)
+    return done.stdout.splitlines(), nothing_renders(tried)
 
 
 def _last_line(text: str, code: int) -> str:
     return (text.strip().splitlines() or [f"the rendering process ended with code {code}"])[-1]
-
-
-def _nothing_renders(tried: list[str]) -> str:
-    return f"nothing here can render without a display: {advice()} ({'; '.join(tried)})"
 
 
 def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
@@ -109,11 +80,11 @@ def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> 
     arguments = (str(folder.absolute()), what, str(output.absolute()), *more)
     tried: list[str] = []
     for back_end in back_ends():
-        done = run("robbdd_tools.agent.render_run", *arguments, more={"MUJOCO_GL": back_end})
+        done = run("robbdd_tools.agent.render_run", *arguments, more={CHOICE: back_end})
         if done.returncode == 0:
             return done.stdout.splitlines()
         said = _last_line(done.stderr, done.returncode)
         if done.returncode != NO_GRAPHICS:
             raise NoPictures(said)
         tried.append(f"{back_end}: {said}")
-    raise NoPictures(_nothing_renders(tried))
+    raise NoPictures(nothing_renders(tried))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SLIPPED = 3
 """The gripper has lost the object after this many ticks in a row without grip."""
 HIT_BEFORE = round(0.5 / TICK)
-"""What an object hit at most this many ticks ago may have torn it out of the gripper."""
+"""A collision at most this many ticks ago may have torn an object out of the gripper."""
 DIP = 0.05
 """While the joints move evenly, the tool may sink this far (m) below both ends of its path."""
 LONG = 10.0

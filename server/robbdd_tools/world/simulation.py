@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.belts import Belts
+from robbdd_tools.world.cameras import Cameras
 from robbdd_tools.world.contact_forces import ContactForces
 from robbdd_tools.world.disturbance import Disturbance
 from robbdd_tools.world.engine import SUBSTEPS, TICK, WARNINGS, mujoco
@@ -52,6 +53,7 @@ class Simulation:
         self.world = world
         self.model: Any = world.model
         self.data: Any = mujoco.MjData(world.model)
+        self.cameras = Cameras(self.model, self.data)
         self.stepping = 0.0
         self.ticks = 0
         self.watchers: list[Callable[[], None]] = []

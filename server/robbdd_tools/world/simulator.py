@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.trace import EventStamp, Trace
+    from robbdd_tools.world.cameras import Cameras
     from robbdd_tools.world.composition import World
     from robbdd_tools.world.momentary import Velocity
     from robbdd_tools.world.robot import Robot
@@ -20,7 +21,7 @@ class Simulator(Protocol):
     - set up: the constructor takes a ``World``; ``settle`` brings it to rest and starts the clock.
     - step: ``tick``.
     - observe: ``pose``, ``velocity``, ``tool``, ``holds``, ``joint_positions``, ``joint_velocities``, ``joint_of``,
-      ``contact_force``, ``gravity``, ``trace``, and ``seen`` as a robot with faults would.
+      ``contact_force``, ``gravity``, ``cameras``, ``trace``, and ``seen`` as a robot with faults would.
     - command: ``command``, and ``drive`` for mobile bases; ``targets`` are the goals of an arm's joints.
     - snapshot: ``state`` and ``restore``; ``contents`` shows whether anything else has changed the world.
     """
@@ -29,6 +30,8 @@ class Simulator(Protocol):
     """The compiled scene."""
     robots: dict[str, Robot]
     """The arms, by the names of their agents."""
+    cameras: Cameras
+    """The cameras for users' behaviours."""
 
     @property
     def time(self) -> float:

@@ -18,6 +18,8 @@ from robbdd_tools.world.intactness import changed
 from robbdd_tools.world.motion import frame_of, tool_pose
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from robbdd_tools.catalog.api import Arguments, FloatArray
     from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.world.simulator import Simulator
@@ -105,6 +107,17 @@ class AgentWorld:
     def _known(name: str, names: Iterable[str]) -> None:
         if name not in names:
             raise KeyError(f"there is no '{name}' in the scene; it has {', '.join(names)}")
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The names of the cameras."""
+        return self._simulation.cameras.names
+
+    def picture(
+        self, camera: str | tuple[FloatArray, FloatArray], size: tuple[int, int] = (320, 240)
+    ) -> NDArray[np.uint8]:
+        """Return the pixels that a camera sees; raises ``KeyError``, ``ValueError``, or ``SimulationError``."""
+        return self._simulation.cameras.take(camera, size)
 
     def place(self, workspace: str) -> FloatArray:
         """Return the centre (m) of a workspace's bottom; raises ``KeyError``."""
