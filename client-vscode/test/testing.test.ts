@@ -206,6 +206,32 @@ test("a clause that a cancelled run left open gets no result", async () => {
   assert.deepEqual(calls, []);
 });
 
+test("a scenario that a cancelled run left open has not passed, those that ended have", async () => {
+  const world = new World();
+  const { calls, sink } = recorded();
+  const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
+  const judged = { robustness: 0.01, unit: "m", at: 1 };
+  const open = { verdict: "unknown", failure: "the run was cancelled (unknown)", cancelled: true } as const;
+  // Scenario 2 has ended, of scenario 3 one of two repetitions, and the others have not.
+  const scenarios = [2, 3, 3, 1].map((variation, index) => [
+    message("ScenarioStarted", { index, variation, values: `part = cube${variation}`, source: at(9) }),
+    message("ClauseJudged", { index, ...judged, ...words("held", 0) }),
+    ...(index < 2 ? [message("ScenarioFinished", { index })] : [message("ClauseJudged", { index, ...open, ...words("placed", 1) })]),
+  ]);
+  for (const said of scenarios.flat()) {
+    follower.take({ run: "1", uri: FILE, message: said });
+  }
+  await follower.interrupt("");
+  assert.deepEqual(calls, [
+    "passed part = cube2 / Then held 0",
+    "passed part = cube3 / Then held 0",
+    "passed part = cube3 / Then held 0",
+    "passed part = cube1 / Then held 0",
+    "skipped part = cube1 / Then held",
+    "end",
+  ]);
+});
+
 test("a refused run shows the reason at the requested tests", async () => {
   const world = new World();
   await world.tree.load(FILE);

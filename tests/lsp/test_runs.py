@@ -220,6 +220,11 @@ async def test_the_lens_record_runs_a_scenario_and_pictures_what_it_violates(edi
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in pictures)
 
 
+def _indices(run_messages: list[Any], kind: str) -> set[int]:
+    """Return the numbers of the executions that have a message of this type."""
+    return {entry.message.index for entry in run_messages if entry.message.type == kind}
+
+
 @pytest.mark.physics
 async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, run_messages: list[Any]) -> None:
     make_endless(editor.path)
@@ -227,7 +232,9 @@ async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, r
     await editor.diagnostics()
     running = asyncio.ensure_future(execute(editor, "run"))
     async with asyncio.timeout(PATIENCE):
-        while not any(entry.message.type == "ScenarioFinished" for entry in run_messages):
+        while not (finished := _indices(run_messages, "ScenarioFinished")) or not any(
+            index > 1 for index in _indices(run_messages, "ClauseJudged")
+        ):
             await asyncio.sleep(0.01)
     await editor.client.workspace_execute_command_async(types.ExecuteCommandParams(command="robbdd.cancel"))
     assert (await running)["cancelled"]
@@ -240,6 +247,9 @@ async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, r
     kept = [clause for scenario in plain(results)["scenarios"] for clause in scenario["clauses"]]
     assert 0 < len(kept) < 20
     assert "unknown" not in {clause["verdict"] for clause in kept}
+    # The ball was at its source, but its scenario has not passed.
+    assert {scenario["variation"] - 1 for scenario in plain(results)["scenarios"]} >= finished
+    assert {len(scenario["clauses"]) for scenario in plain(results)["scenarios"]} == {5}
 
 
 @pytest.mark.parametrize(

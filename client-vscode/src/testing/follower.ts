@@ -25,6 +25,10 @@ interface Begun<I> {
   readonly failing: Set<number>;
   /** Whether a clause is violated. */
   failed: boolean;
+  /** Clauses that hold. */
+  readonly held: Set<I>;
+  /** Whether the scenario has ended, with a verdict on each clause. */
+  finished: boolean;
   /** Displays of unknown clauses, which wait for the end of the scenario: the editor never takes back an error. */
   waiting: ((failed: boolean) => void)[];
   /** When the judgement of the current clause began, ms. */
@@ -35,6 +39,8 @@ interface Begun<I> {
 export class RunFollower<I extends Item<I>> {
   private readonly scenarios = new Map<number, Begun<I>>();
   private readonly worst = new Worst<I>();
+  /** Clauses that hold in a scenario that has ended; repetitions of a scenario share their clauses. */
+  private readonly proven = new Set<I>();
   private readonly report: RunReport;
   private pending: Promise<void> = Promise.resolve();
 
@@ -57,7 +63,7 @@ export class RunFollower<I extends Item<I>> {
       } else if (message.type === "ClauseJudged") {
         this.judge(message, instant);
       } else if (message.type === "ScenarioFinished") {
-        this.showWaiting(this.scenarios.get(message.index));
+        this.finish(this.scenarios.get(message.index));
       }
       const scenario = "index" in message && message.index !== null ? this.scenarios.get(message.index) : undefined;
       for (const line of this.report.add(message)) {
@@ -85,6 +91,7 @@ export class RunFollower<I extends Item<I>> {
     await this.pending;
     for (const scenario of this.scenarios.values()) {
       this.showWaiting(scenario);
+      this.takeBack(scenario);
     }
     for (const line of this.report.interrupt(reason)) {
       this.sink.output(line);
@@ -104,7 +111,7 @@ export class RunFollower<I extends Item<I>> {
     const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
-      this.scenarios.set(message.index, { item, values: message.values, failing: new Set(), failed: false, waiting: [], since: instant });
+      this.scenarios.set(message.index, { item, values: message.values, failing: new Set(), failed: false, held: new Set(), finished: false, waiting: [], since: instant });
     }
   }
 
@@ -125,6 +132,9 @@ export class RunFollower<I extends Item<I>> {
     const item = scenario && this.clause(scenario, message);
     if (scenario === undefined || item === undefined || message.cancelled) {
       return;
+    }
+    if (message.verdict === "holds") {
+      scenario.held.add(item);
     }
     const { because } = message;
     const judged = folded(outcomeOf(message, scenario.values), because, because !== null && scenario.failing.has(because.position));
@@ -149,6 +159,25 @@ export class RunFollower<I extends Item<I>> {
   private showWaiting(scenario: Begun<I> | undefined): void {
     for (const show of scenario?.waiting.splice(0) ?? []) {
       show(scenario?.failed === true);
+    }
+  }
+
+  private finish(scenario: Begun<I> | undefined): void {
+    this.showWaiting(scenario);
+    if (scenario !== undefined) {
+      scenario.finished = true;
+      scenario.held.forEach((item) => this.proven.add(item));
+    }
+  }
+
+  /** A scenario that the run left open has not passed, but the editor would say so of one with only clauses that hold. */
+  private takeBack({ finished, failing, held }: Begun<I>): void {
+    if (!finished && failing.size === 0) {
+      for (const item of held) {
+        if (!this.proven.has(item)) {
+          this.sink.skipped(item);
+        }
+      }
     }
   }
 

@@ -34,7 +34,7 @@ def register_test_results(server: RobbddServer) -> None:
         folders = list(ls.workspace.folders)
         files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
         await ls.stored_verdicts.look_beside(*files)
-        scenarios = list(ls.results)
+        scenarios = [scenario for scenario in ls.results if _is_shown(scenario)]
         models = sorted({scenario.model for scenario in scenarios})
         return await ls.in_background(lambda snapshot: _kept(snapshot, scenarios, models), *models)
 
@@ -46,6 +46,14 @@ def register_test_results(server: RobbddServer) -> None:
             return {"problem": read, "left": 0, "scenarios": []}
         files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
         return await ls.in_background(lambda snapshot: _matched(snapshot, read, files), *files)
+
+
+def _is_shown(scenario: JudgedScenario) -> bool:
+    """Whether the tree of tests shows a scenario.
+
+    A cancelled run leaves scenarios open. If all of their judged clauses hold, the tree would show that they passed.
+    """
+    return scenario.finished or any(judgement.outcome != "holds" for judgement in scenario.clauses.values())
 
 
 def _kept(snapshot: Snapshot, scenarios: Sequence[JudgedScenario], models: Iterable[str]) -> dict[str, Any]:

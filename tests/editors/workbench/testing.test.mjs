@@ -143,6 +143,13 @@ step("a run that is cancelled ends, sooner than it began", async () => {
   });
   assert.ok(ending < beginning, `${Math.round(ending)} ms after ${Math.round(beginning)} ms`);
   assert.equal(await tests.rowsThat("error").count(), 0, "what was not judged has no result");
+  await tests.expand("endless-bench");
+  await tests.expand("part-again");
+  await tests.turns("passed", "thing = cube0, goal = left_ws");
+  // What was not finished has not passed.
+  await tests.rowsThat("skipped", "thing = ball0").nth(1).waitFor();
+  await workbench.screenshot("testing-cancelled");
+  await tests.collapse("endless-bench");
 });
 
 step("a continuous run follows each save", async () => {

@@ -24,7 +24,7 @@ export class TestingView {
     return this.page.locator(".test-explorer-tree .monaco-list-row", { hasText: text });
   }
 
-  /** The rows that show a state: `passed`, `failed`, `error`, `queued`, or `run` while it is being executed. */
+  /** The rows that show a state: `passed`, `failed`, `error`, `queued`, `skipped`, or `run` while it is being executed. */
   rowsThat(state, text = /./) {
     const icon = this.page.locator(state === "run" ? ".computed-state.codicon-loading" : `.codicon-testing-${state}-icon`);
     return this.row(text).filter({ has: icon });
