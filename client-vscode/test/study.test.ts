@@ -4,7 +4,7 @@ import { type JudgedScenario, readResults } from "../src/panels/study/results";
 import { packed, unpacked } from "../src/panels/study/packed";
 import { intervalWords, wilson } from "../src/statistics";
 import { type Wish, ROWS, WHOLE, arranged, columnsOf, inSight, rowsOf } from "../webviews/study/matrix";
-import { cell, clauses, dimensions, histogram, local, openingPair, shown } from "../webviews/study/tables";
+import { cell, clauses, dimensions, failing, histogram, local, openingPair, shown } from "../webviews/study/tables";
 
 const IRI = "https://example.org/at-goal";
 const scenario = (robot: string, scale: number, robustness: number | null): JudgedScenario => {
@@ -38,6 +38,13 @@ test("a cell counts what passed and leads to the worst execution", () => {
   assert.deepEqual(cell(SCENARIOS, [], ""), { passed: 2, total: 5, worst: undefined, unit: "", unknown: 1, indices: [2, 3, 4, 0, 1] });
   assert.deepEqual(cell(SCENARIOS, [["robot", "panda"]], IRI), { passed: 2, total: 2, worst: 0.015, unit: "m", unknown: 0, indices: [0, 1] });
   assert.equal(cell(SCENARIOS, [["robot", "ur10"], ["scale", "0.8"]], ""), undefined);
+});
+
+test("what does not hold is listed over all values, the worst first", () => {
+  assert.deepEqual(failing(SCENARIOS, IRI), [2, 3, 4]);
+  assert.deepEqual(failing(SCENARIOS, ""), [2, 3, 4]);
+  assert.deepEqual(failing(SCENARIOS.slice(0, 2), ""), []);
+  assert.deepEqual(failing([], ""), []);
 });
 
 test("each clause is told once", () => {

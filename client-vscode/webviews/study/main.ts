@@ -10,7 +10,7 @@ import { connect } from "../shared/host";
 import { toolbar } from "../shared/toolbar";
 import { executions } from "./executions";
 import { MatrixPart } from "./matrixPart";
-import { type Bin, type Cell, type Dimension, cell, clauses, dimensions, histogram, local, openingPair } from "./tables";
+import { type Bin, type Cell, type Dimension, cell, clauses, dimensions, failing, histogram, local, openingPair } from "./tables";
 
 const BINS = 40;
 const WIDTH = 300;
@@ -27,12 +27,13 @@ const across = element("select", { "aria-label": "Variable across" });
 const down = element("select", { "aria-label": "Variable down" });
 const subject = element("select", { "aria-label": "What is counted" });
 const map = element("div", { class: "map" });
+const failures = element("p");
 const listed = element("div", { class: "listed" });
 const margins = element("div", { class: "margins" });
 const spoken = announcer();
 const tabs = { factors: tab("Factors", "factors"), matrix: tab("Matrix", "matrix") } as const;
 const choices = element("span", { class: "choices" }, element("label", {}, "Passed: ", subject), element("label", {}, "across ", across), element("label", {}, "down ", down));
-const factors = element("main", {}, title, map, element("p", { class: "note" }, NOTE), listed, element("h2", {}, "Margins of the clauses"), margins);
+const factors = element("main", {}, title, failures, map, element("p", { class: "note" }, NOTE), listed, element("h2", {}, "Margins of the clauses"), margins);
 const matrix = new MatrixPart(replay, spoken.say);
 let scenarios: readonly JudgedScenario[] = [];
 let found: readonly Dimension[] = [];
@@ -99,6 +100,7 @@ function offer(select: HTMLSelectElement, choices: readonly Choice[], wanted: st
 
 function draw(): void {
   map.replaceChildren(heatMap(dimension(across.value), dimension(down.value), subject.value));
+  failures.replaceChildren(...failureList(failing(scenarios, subject.value), subject.value));
   keep();
 }
 
@@ -138,13 +140,30 @@ function square(counted: Cell | undefined, clause: string, words: string): HTMLE
   }
   press.style.setProperty("--passed", `${(100 * passed) / total}%`);
   press.addEventListener("click", () => {
-    for (const other of map.querySelectorAll("[aria-expanded]")) {
-      other.setAttribute("aria-expanded", String(other === press));
-    }
-    listed.replaceChildren(executions(words, indices, scenarios, clause, replay));
-    listed.querySelector("button")?.focus();
+    list(press, words, indices, clause);
   });
   return element("td", {}, press);
+}
+
+/** A button that lists the executions that do not hold, over all values; nothing if all hold. */
+function failureList(indices: readonly number[], clause: string): HTMLElement[] {
+  if (indices.length === 0) {
+    return [];
+  }
+  const press = button("What does not hold", "What does not hold: list these executions, the worst first", () => {
+    list(press, "Do not hold", indices, clause);
+  });
+  press.setAttribute("aria-expanded", "false");
+  return [press];
+}
+
+/** List executions below the map, where the keyboard goes; `press` is the button that asked for it. */
+function list(press: HTMLElement, words: string, indices: readonly number[], clause: string): void {
+  for (const other of factors.querySelectorAll("[aria-expanded]")) {
+    other.setAttribute("aria-expanded", String(other === press));
+  }
+  listed.replaceChildren(executions(words, indices, scenarios, clause, replay));
+  listed.querySelector("button")?.focus();
 }
 
 /** A clause with its verdict counts and its margins as bars: below zero violated. */

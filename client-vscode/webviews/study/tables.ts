@@ -111,6 +111,12 @@ export function cell(
   };
 }
 
+/** The numbers of all scenarios that do not hold, or in which a clause does not hold if its IRI is given; the worst first. */
+export function failing(scenarios: readonly JudgedScenario[], clause: string): readonly number[] {
+  const all = cell(scenarios, [], clause);
+  return all === undefined ? [] : all.indices.slice(0, all.total - all.passed);
+}
+
 /** The margins of a clause in `count` bins of equal width, with a boundary at zero if they have both signs. */
 export function histogram(scenarios: readonly JudgedScenario[], clause: string, count: number): Bin[] {
   const outcomes = scenarios.flatMap((scenario, index) => outcomesOf(scenario, index, clause));

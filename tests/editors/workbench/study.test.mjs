@@ -29,6 +29,9 @@ step("a heat map counts what passed, with intervals, and a cell lists its execut
   await page.getByRole("heading", { name: "3 hold, 1 violated" }).waitFor();
   const cells = page.locator(".map td");
   await eventually(async () => assert.deepEqual(await cells.allTextContents(), ["1/121–100 %", "1/121–100 %", "1/121–100 %", "0/10–79 %"]));
+  await page.getByRole("button", { name: "What does not hold" }).press("Enter");
+  await page.getByRole("heading", { name: "Do not hold: 1 execution" }).waitFor();
+  await page.locator(".executions tr:has(td)", { hasText: /part = ball, robot = ur10.*✗ violated/ }).getByRole("button", { name: /^Replay/ }).and(page.locator(":focus")).waitFor();
   await page.getByLabel("What is counted").selectOption({ label: "at-goal" });
   await page.locator("td", { hasText: /^0\/10–79 %worst −/ }).waitFor();
   await page.locator(".margins rect.violated").first().waitFor();
