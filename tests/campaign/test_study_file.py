@@ -240,3 +240,22 @@ def test_only_what_changes_executions_changes_the_digest(tmp_path: Path) -> None
     first = digest(f"{HEAD} seed: 3 }}")
     assert first == digest(f"// A comment.\n{HEAD}\n\n seed:3 }}")
     assert len({first, digest(f"{HEAD} seed: 4 }}"), digest(f"{HEAD} seed: 3 repeat: 2 }}")}) == 3
+
+
+def test_a_graph_that_a_scene_instance_imports_counts_for_the_digest_and_its_comments_do_not(tmp_path: Path) -> None:
+    for path in (EXAMPLES / "study").iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    scene = tmp_path / "bench.scenex"
+    scene.write_text(f'import "more.ttl"\n{scene.read_text(encoding="utf-8")}', encoding="utf-8")
+    text = 'import "study.bdd" Study s { factor scene: { "bench.scenex" } }'
+    (tmp_path / "s.study").write_text(text, encoding="utf-8")
+
+    def digest(graph: str) -> str:
+        (tmp_path / "more.ttl").write_text(graph, encoding="utf-8")
+        study = load_study(tmp_path / "s.study")
+        assert study.findings == ()
+        return study.digest
+
+    first = digest("<https://example.org/part> <https://example.org/weighs> 1 .")
+    assert first == digest("# A comment.\n<https://example.org/part>  <https://example.org/weighs> 1 .")
+    assert first != digest("<https://example.org/part> <https://example.org/weighs> 2 .")

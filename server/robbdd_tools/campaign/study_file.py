@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import load_bytes, path_to_uri, read_text
+from robbdd_tools.base.files import path_to_uri, read_text
 from robbdd_tools.campaign.designs import design_points
 from robbdd_tools.campaign.rates import StatisticsNotInstalled
 from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
@@ -24,7 +24,7 @@ from robbdd_tools.run.run_policy import TIMEOUT
 from robbdd_tools.syntax.study_content import STUDY, Factor, StudyText, Word
 from robbdd_tools.syntax.study_text import read_study
 from robbdd_tools.workbench.diagnostics import Finding, Place
-from robbdd_tools.workbench.model import Model, ModelErrors, load_all, read_instances
+from robbdd_tools.workbench.model import Model, ModelErrors, ModelFile, load, load_all, read_instances
 from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.points import block_seeds
@@ -103,20 +103,27 @@ class Study:
         return merged_links(file.requirements for file in self.cells[0].plan.files)
 
     @cached_property
-    def digest(self) -> str:
-        """The SHA-256 of everything that defines the executions: settings, graphs of models, scene instances.
+    def scene_files(self) -> tuple[ModelFile, ...]:
+        """The ``.scenex`` files that are levels, in their order. They are loaded at the first access.
 
-        Comments and layout do not count. Raises ``OSError``.
+        Raises the errors of ``load``.
+        """
+        return tuple(file for word in self.content.scenes for file in load(self.path.parent / word.text).files)
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of everything that defines the executions: settings, graphs of models and scene instances.
+
+        Comments and layout do not count. Raises the errors of ``load``.
         """
         content = self.content
-        scenes = [word for factor in content.factors if factor.implementation is None for word in factor.levels]
         words = [
             repr([word.text for word in content.scenarios]),
             "" if content.where is None else content.where.text,
             repr(sorted(content.numbers.items())),
             *(cell.words for cell in self.cells),
             *(cell.plan.digest for cell in self.cells),
-            *(hashlib.sha256(load_bytes(self.path.parent / word.text)).hexdigest() for word in scenes),
+            *(file.digest for file in self.scene_files),
             *(["block"] if content.is_blocked else []),
             *([] if self.cells[0].plan.selection.points is None else [repr(self.cells[0].plan.selection.points)]),
         ]
