@@ -6,18 +6,32 @@ import hashlib
 import json
 import shutil
 import zipfile
+from base64 import urlsafe_b64encode
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from rdflib import Graph
 
 from campaign.study_agents import QuickAgent, write_study
+from robbdd_tools.campaign import study_evidence_graph
 from robbdd_tools.cli import main
 from robbdd_tools.run import scheduler
 
 Files = dict[str, bytes]
 RESULTS = "study/results.json"
+VERDICTS = """
+PREFIX earl: <http://www.w3.org/ns/earl#>
+PREFIX prov: <http://www.w3.org/ns/prov#>
+PREFIX rbw: <https://robbdd.org/metamodels/workbench#>
+SELECT ?clause ?outcome ?execution ?trace WHERE {
+    ?execution a rbw:ScenarioRun ; rbw:run/prov:used ?study . ?study a rbw:Study ; rbw:of-variant ?variant .
+    ?execution rbw:of-variant ?variant .
+    ?assertion earl:test ?clause; earl:result/earl:outcome ?outcome; prov:wasGeneratedBy ?execution .
+    OPTIONAL { ?trace prov:wasGeneratedBy ?execution ; a prov:Entity . FILTER STRSTARTS(STR(?trace), "ni:") }
+}
+"""
 
 
 @pytest.fixture
@@ -58,9 +72,11 @@ def verified(
 
 
 def changed(files: Files, change: Callable[[dict[str, Any]], None]) -> Files:
+    """Change the results, and leave out the graph, which would show any change."""
     document = json.loads(files[RESULTS])
     change(document)
-    return {**files, RESULTS: json.dumps(document).encode()}
+    others = {name: data for name, data in files.items() if name != "graph.ttl"}
+    return {**others, RESULTS: json.dumps(document).encode()}
 
 
 def test_a_bundle_is_valid_without_the_project_and_has_the_same_bytes_again(
@@ -168,3 +184,56 @@ def test_a_study_that_was_edited_is_not_packed(
     assert main(["evidence", "pack", study.name, "-o", "x.zip"]) == 2
     assert "was changed since it began" in capsys.readouterr().err
     assert not Path("x.zip").exists()
+
+
+@pytest.fixture
+def traced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a study that has kept the trace of its third execution. It is the working folder."""
+    monkeypatch.setattr(scheduler, "Agent", QuickAgent)
+    monkeypatch.chdir(tmp_path)
+    assert main(["study", "run", write_study(tmp_path).name]) == 1
+    trace = tmp_path / ".robbdd/studies/x.study/traces/3.mcap"
+    trace.parent.mkdir()
+    trace.write_bytes(b"poses")
+    return tmp_path
+
+
+def test_the_graph_leads_from_the_study_over_clauses_and_executions_to_traces(traced: Path) -> None:
+    assert main(["evidence", "pack", "x.study", "-o", "x.zip"]) == 0
+    files = read(traced / "x.zip")
+    assert files["study/traces/3.mcap"] == b"poses"
+    found: Any = list(Graph().parse(data=files["graph.ttl"], format="turtle").query(VERDICTS))
+    stated = json.loads(files[RESULTS])
+    assert len({row.execution for row in found}) == 40
+    assert len(found) == len(stated["clause"])
+    violated = [row for row in found if str(row.outcome).endswith("failed")]
+    assert len(violated) == sum(clause[3] == 1 for clause in stated["clause"])
+    # RFC 6920: the digest in base64url without padding.
+    name = urlsafe_b64encode(hashlib.sha256(b"poses").digest()).decode().rstrip("=")
+    named = {(str(row.trace), str(row.execution).rpartition("/")[2]) for row in found if row.trace is not None}
+    assert named == {(f"ni:///sha-256;{name}", "3")}
+
+
+def test_a_changed_trace_or_graph_contradicts_the_rest(traced: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["evidence", "pack", "x.study", "-o", "x.zip"]) == 0
+    files = read(traced / "x.zip")
+    code, said = verified(traced, files, capsys)
+    assert (code, "✔ graph: graph.ttl is that of the study, its results and its traces" in said) == (3, True), said
+    for other in ({"study/traces/3.mcap": b"others"}, {"graph.ttl": files["graph.ttl"].replace(b"failed", b"passed")}):
+        code, said = verified(traced, {**files, **other}, capsys)
+        assert (code, "graph.ttl is not the graph of the study with these results" in said) == (1, True), said
+    assert (
+        "study/traces/3.mcap was changed"
+        in verified(traced, {**files, "study/traces/3.mcap": b""}, capsys, listed=False)[1]
+    )
+
+
+def test_a_bundle_without_its_traces_or_of_too_many_executions_has_no_graph(
+    traced: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["evidence", "pack", "x.study", "-o", "x.zip", "--no-traces"]) == 0
+    assert not {"graph.ttl", "study/traces/3.mcap"} & read(traced / "x.zip").keys()
+    monkeypatch.setattr(study_evidence_graph, "MOST_EXECUTIONS", 39)
+    assert main(["evidence", "pack", "x.study", "-o", "y.zip"]) == 0
+    files = read(traced / "y.zip")
+    assert ("graph.ttl" in files, "study/traces/3.mcap" in files) == (False, True)

@@ -1,7 +1,8 @@
 """Write the evidence of a study as one file, and check such a file without a network.
 
-A bundle of a study has its texts and files in ``sources/`` and all its results in ``study/results.json``. It has no
-traces: an execution follows from its seed, so the check executes some of them again.
+A bundle of a study has its texts and files in ``sources/``, all its results in ``study/results.json`` and the traces
+that the study has kept in ``study/traces/``. Most studies keep none or few: an execution follows from its seed, so the
+check executes some of them again.
 """
 
 from __future__ import annotations
@@ -29,8 +30,10 @@ from robbdd_tools.campaign.evidence_parts import (
 from robbdd_tools.campaign.study_again import NotAgain, execute_again
 from robbdd_tools.campaign.study_batches import batches
 from robbdd_tools.campaign.study_changes import changed_study
+from robbdd_tools.campaign.study_evidence_graph import GRAPH, evidence_graph, graph_check
 from robbdd_tools.campaign.study_file import Study, load_study
 from robbdd_tools.campaign.study_place import BATCHES, open_results, study_folder
+from robbdd_tools.campaign.study_traces import TRACES, kept_trace, traces_in
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.run.study_store import restore
@@ -49,10 +52,11 @@ Key = tuple[str, str, int, str, int, int]
 """Cell, variant, variation, ``.bddx`` execution, repetition and seed of an execution."""
 
 
-def pack_study(path: Path, store: Path | None, output: Path) -> Bundle:
+def pack_study(path: Path, store: Path | None, output: Path, *, traces: bool = True) -> Bundle:
     """Write the bundle of a study. Raises ``NoEvidence``, ``StudyProblem``, ``DatabaseProblem`` and ``OSError``.
 
-    The study, its models and files must be unchanged since its executions. Equal studies make equal bundles.
+    The study, its models and files must be unchanged since its executions. Equal studies make equal bundles. Without
+    ``traces``, the bundle of a study that has kept some has no graph either, since the check could not build it again.
     """
     folder = study_folder(path, store)
     study = load_study(path)
@@ -63,6 +67,7 @@ def pack_study(path: Path, store: Path | None, output: Path) -> Bundle:
         if reason:
             raise NoEvidence(f"{reason}, or execute it again")
         tables, facts = results.tables(), results.facts()
+        graph = evidence_graph(study, results, folder) if traces or not traces_in(folder) else None
         total = sum(results.verdicts().values())
     used = _used(folder, facts)
     for name, (file, digest) in used.items():
@@ -73,6 +78,9 @@ def pack_study(path: Path, store: Path | None, output: Path) -> Bundle:
     names = source_names([*_texts(study), *(file for file, _ in used.values())])
     files = {name: load_bytes(file, RESULT_SIZE) for file, name in names.items()}
     files[RESULTS] = json_bytes(tables)
+    files |= {} if graph is None else {GRAPH: graph}
+    for number in traces_in(folder) if traces else ():
+        files[f"{STUDY}/{TRACES}/{number}.mcap"] = load_bytes(kept_trace(folder, number), RESULT_SIZE)
     contents = {
         "kind": STUDY,
         "robbdd": facts.get("version", ""),
@@ -112,20 +120,21 @@ def study_checks(contents: Mapping[str, Any], folder: Path, replays: int) -> Ite
             yield _same_files(contents, folder, store)
             yield _planned(study, store)
             yield _consistent(store)
+            if GRAPH in contents["files"]:
+                yield graph_check(study, store, folder / STUDY, folder / GRAPH)
             yield _again(path, store, folder, replays)
     except (RobbddError, OSError, ValueError, KeyError, TypeError, IndexError) as error:
         yield Check("results", "", (f"{RESULTS} cannot be used: {str(error).replace(str(folder), '')}",))
 
 
 def _texts(study: Study) -> list[Path]:
-    """Return the study, its models with everything that they import, and the scene instances of its levels."""
+    """Return the study, and its models and the scene instances of its levels with everything that they import."""
+    assert study.model is not None
     found: dict[Path, None] = {study.path.resolve(): None}
-    snapshots = [] if study.model is None else [(one.snapshot, one.uri) for one in study.model.files]
-    for snapshot, uri in snapshots:
-        for analysis in snapshot.closure(uri):
+    for one in (*study.model.files, *study.scene_files):
+        for analysis in one.snapshot.closure(one.uri):
             file = uri_to_path(analysis.document.uri)
             found |= {} if file is None else {file.resolve(): None}
-    found |= {(study.path.parent / word.text).resolve(): None for word in study.content.scenes}
     return list(found)
 
 

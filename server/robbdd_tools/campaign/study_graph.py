@@ -17,14 +17,15 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ExecutionResult
 
 
-def study_graph(study: Study, store: StudyReader | None = None) -> BuiltGraph:
+def study_graph(study: Study, store: StudyReader | None = None, traces: Mapping[int, str] | None = None) -> BuiltGraph:
     """Return the graph of a study without errors, with the results in ``store``.
 
+    ``traces`` are the SHA-256 of kept traces, by the number of their execution in the study minus 1.
     Raises ``ModelErrors``, ``DatabaseProblem``, and ``BadResults`` if a result is about a scenario that the study no
     longer has.
     """
     from robbdd_tools.graph.write.planned_study import add_study, add_study_run, joined
-    from robbdd_tools.graph.write.run_results import add_results, run_iri
+    from robbdd_tools.graph.write.run_results import add_results, add_traces, run_iri
 
     assert study.model is not None
     built = joined([file.graph for file in study.model.runnable])
@@ -37,6 +38,10 @@ def study_graph(study: Study, store: StudyReader | None = None) -> BuiltGraph:
         document = _document(study, executions, specs, complete=len(executions) == total)
         add_results(graph, document)
         add_study_run(graph, study.content, study.digest, run_iri(document), (one.values for one in executions))
+        places = {one.index: place for place, one in enumerate(executions)}
+        add_traces(
+            graph, document, {places[index]: digest for index, digest in (traces or {}).items() if index in places}
+        )
     return built
 
 

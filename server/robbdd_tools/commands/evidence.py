@@ -34,7 +34,7 @@ def pack(options: PackOptions) -> int:
 
     def work() -> int:
         if options.run.endswith(SUFFIX):
-            written = pack_study(Path(options.run), options.store, options.output)
+            written = pack_study(Path(options.run), options.store, options.output, traces=options.traces)
             print_line(f"{options.output}: {written.traces} executions, digest {written.digest}")
             return OK
         run = find_run(options.run, options.path, store=options.store)
