@@ -12,6 +12,9 @@ BLOCK = """<mujoco><worldbody>
   <body name="plate"><geom type="box" size=".1 .1 .01"/></body>
   <body name="block"><freejoint/><geom type="box" size=".012 .02 .03" mass="0.05" friction="0.7"/></body>
 </worldbody></mujoco>"""
+BRACKET = """<mujoco><worldbody><body name="bracket"><freejoint/>
+<geom type="box" size=".04 .03 .004" pos="0 0 .004" mass="0.04"/>
+<geom type="box" size=".004 .03 .025" pos=".036 0 .033" mass="0.05"/></body></worldbody></mujoco>"""
 TRAY = """<mujoco><worldbody><body name="tray"><geom type="box" size=".1 .15 .01"/>
 <site name="workspace" type="box" size=".09 .14 .05" pos="0 0 .06"/></body></worldbody></mujoco>"""
 

@@ -63,6 +63,39 @@ def test_what_is_too_wide_is_explained() -> None:
         finger_grasps("crate", thing(ShapeKind.BOX, 0.1, 0.1, 0.1), AT, UPRIGHT, STROKE)
 
 
+def made_of(*parts: tuple[tuple[float, float, float], tuple[float, float, float]]) -> ObjectModel:
+    """Return an object of boxes, each given by half edges and position (m)."""
+    shapes = tuple(Shape(ShapeKind.BOX, size, place) for size, place in parts)
+    return ObjectModel("x", ("x",), shapes, 0.1, 0.5, True, True, 0.0, (1, 1, 1, 1), "X.")
+
+
+PLATE = ((0.04, 0.035, 0.004), (0.0, 0.0, -0.025))
+LEG = ((0.004, 0.03, 0.025), (0.036, 0.0, 0.004))
+
+
+def test_a_part_beside_the_middle_is_taken_after_the_middle() -> None:
+    plate, *of_leg = finger_grasps("bracket", made_of(PLATE, LEG), AT, UPRIGHT, STROKE)
+    assert plate.part is None
+    assert {leg.part for leg in of_leg} == {1}
+    assert [leg.width for leg in of_leg] == pytest.approx([0.008, 0.06])
+    assert all(leg.position == pytest.approx([0.436, 0.1, 0.204]) for leg in of_leg)
+    assert all(leg.aside == pytest.approx((-0.036, 0.0)) for leg in of_leg)
+
+
+def test_what_is_too_wide_in_its_middle_is_taken_at_a_wall() -> None:
+    walls = [((0.1, 0.003, 0.04), (0.0, side * 0.1, 0.04)) for side in (-1, 1)]
+    found = finger_grasps("crate", made_of(((0.1, 0.1, 0.003), (0.0, 0.0, 0.0)), *walls), AT, UPRIGHT, STROKE)
+    assert {grasp.part for grasp in found} == {1, 2}
+    assert all(grasp.width == pytest.approx(0.006) for grasp in found)
+
+
+def test_a_part_below_another_one_or_without_room_for_a_finger_is_not_taken() -> None:
+    beside = ((0.004, 0.03, 0.04), (0.024, 0.0, 0.02))
+    for other in (((0.05, 0.02, 0.004), (0.036, 0.0, 0.05)), beside):
+        found = finger_grasps("stack", made_of(PLATE, LEG, other), AT, UPRIGHT, STROKE)
+        assert 1 not in {grasp.part for grasp in found}
+
+
 def test_a_cup_takes_hold_on_the_top() -> None:
     for kind in ("cube", "ball", "box"):
         model = OBJECTS[kind]

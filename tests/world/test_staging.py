@@ -15,7 +15,8 @@ from robbdd_tools.catalog.executable import Implementation, Law, Realisation, Sc
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.composition import World, build_world
 from robbdd_tools.world.errors import SceneError
-from world.scene_instances import BLOCK, SAMPLED, TRAY, catalog, file, instance, link
+from robbdd_tools.world.put_down import ALONG
+from world.scene_instances import BLOCK, BRACKET, SAMPLED, TRAY, catalog, file, instance, link
 from world.worlds import BENCH_WS, BIN, BIN_WS, CUBE, PANDA, SCENE, pick_place, scenario
 
 
@@ -155,6 +156,22 @@ def test_where_a_file_has_its_origin_does_not_matter(tmp_path: Path, yaw: float)
         assert run.run_behaviour(0), run.trace.remark
         found.append(run.simulation.pose(CUBE)[0])
     assert all(place == pytest.approx(found[0], abs=1e-4) for place in found)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("yaw", [0.0, 2.0])
+def test_a_bracket_is_gripped_at_its_leg_and_its_middle_is_put_at_the_place(tmp_path: Path, yaw: float) -> None:
+    """Its middle is 36 mm beside the leg, above a plate that is too low to grip on a table."""
+    place = link("x:g.cube.foot", (0.5, 0.1, 0.101), turn=(cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)))
+    staged = instance(place, elements=(file(tmp_path, CUBE, BRACKET, ("x:g.cube", "bracket")),))
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
+    simulation = run.simulation
+    assert run.run_behaviour(0), run.trace.remark
+    bins = simulation.pose(BIN)[0]
+    offset = simulation.pose(CUBE)[0][:2] - bins[:2]
+    assert min(abs(offset[0] - along) for along in ALONG) < 0.004
+    assert abs(offset[1]) < 0.004
 
 
 def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, hypot, pi
+from math import atan2, hypot, inf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,19 +20,27 @@ PLAY = 0.004
 """Minimum clearance (m) between an object and the open gripper."""
 DEPTH = 0.030
 """Maximum depth (m) of the tool below an object's top: the length of the fingers."""
+OTHER_PARTS = 4
+"""Number of parts beside an object's middle that are tried."""
+FINGER = 0.01
+"""Room (m) for a finger beside a part."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grasp:
     """The tool's position (3,) m, the direction (rad) across the tool, and the object's width there (m).
 
-    Fingers close along this direction. ``below`` is the object's extent below the tool, m.
+    Fingers close along this direction. ``below`` is the object's extent below the tool, m. ``aside`` is the horizontal
+    way from the tool to the object's position, m, world frame. ``part`` is the number of the shape to grip if it is not
+    in the object's middle.
     """
 
     position: FloatArray
     closing: float
     width: float
     below: float
+    aside: tuple[float, float] = (0.0, 0.0)
+    part: int | None = None
 
 
 def finger_grasps(
@@ -40,14 +48,24 @@ def finger_grasps(
 ) -> list[Grasp]:
     """Return the grasps of an object at a pose for a gripper with this ``stroke`` (m).
 
-    Raises ``BehaviourError`` when the object is wider than the gripper opens.
+    Those of the part in the object's middle come first, then those of up to ``OTHER_PARTS`` parts beside it. Raises
+    ``BehaviourError`` when the object is wider than the gripper opens.
     """
-    center, directions, top = _highest(model, position, rotation)
-    grip = np.array([center[0], center[1], max(float(center[2]), top - DEPTH)])
-    below = float(grip[2]) - _bottom(model, position, rotation)
-    fitting = [Grasp(grip, angle, width, below) for angle, width in directions if width + PLAY <= stroke]
+    middle = _middle(model, position, rotation)
+    fitting: list[Grasp] = []
+    narrowest = inf
+    for index in (middle, *_parts_beside(model, position, rotation, middle)):
+        shape = model.shapes[index]
+        center = position + rotation @ np.array(shape.position)
+        directions, half_height = _directions(shape, rotation)
+        grip = np.array([center[0], center[1], max(float(center[2]), float(center[2]) + half_height - DEPTH)])
+        below = float(grip[2]) - _bottom(model, position, rotation)
+        aside = (float(position[0] - grip[0]), float(position[1] - grip[1]))
+        part = None if index == middle else index
+        fits = ((angle, width) for angle, width in directions if width + PLAY <= stroke)
+        fitting += [Grasp(grip, angle, width, below, aside, part) for angle, width in fits]
+        narrowest = min(narrowest, *(width for _, width in directions))
     if not fitting:
-        narrowest = min(width for _, width in directions)
         raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the gripper opens {stroke:.3f} m")
     return fitting
 
@@ -59,7 +77,10 @@ def suction_grasps(
 
     Raises ``BehaviourError`` when the object is smaller than the cup.
     """
-    center, directions, top = _highest(model, position, rotation)
+    shape = model.shapes[_middle(model, position, rotation)]
+    center = position + rotation @ np.array(shape.position)
+    directions, half_height = _directions(shape, rotation)
+    top = float(center[2]) + half_height
     narrowest = min(width for _, width in directions)
     if narrowest < diameter:
         raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the suction cup {diameter:.3f} m")
@@ -68,23 +89,38 @@ def suction_grasps(
     return [Grasp(touch, angle, narrowest, below) for angle, _ in _all_round(narrowest)]
 
 
-def _highest(
-    model: ObjectModel, position: FloatArray, rotation: FloatArray
-) -> tuple[FloatArray, list[tuple[float, float]], float]:
-    """Return centre (3,) m, closing directions (rad, width in m) and top (m) of the part to grip.
+def _middle(model: ObjectModel, position: FloatArray, rotation: FloatArray) -> int:
+    """Return the number of the highest shape directly above or below the object's position.
 
-    This is the highest part directly above or below the object's position: a neck, but not the wall of a bin.
+    This is a neck, but not the wall of a bin.
     """
-    best: tuple[FloatArray, list[tuple[float, float]], float] | None = None
-    for shape in model.shapes:
+    best, best_top = 0, -inf
+    for index, shape in enumerate(model.shapes):
         center = position + rotation @ np.array(shape.position)
         directions, half_height = _directions(shape, rotation)
         top = float(center[2]) + half_height
         aside = hypot(*(center - position)[:2]) > min(width for _, width in directions) / 2
-        if best is None or (top > best[2] and not aside):
-            best = (center, directions, top)
-    assert best is not None
+        if index == 0 or (top > best_top and not aside):
+            best, best_top = index, top
     return best
+
+
+def _parts_beside(model: ObjectModel, position: FloatArray, rotation: FloatArray, middle: int) -> list[int]:
+    """Return the numbers of other shapes with nothing of the object above them or beside them, nearest first."""
+    centers = [position + rotation @ np.array(shape.position) for shape in model.shapes]
+    sizes = [_directions(shape, rotation) for shape in model.shapes]
+    tops = [float(center[2]) + half for center, (_, half) in zip(centers, sizes, strict=True)]
+
+    def is_free(index: int) -> bool:
+        room = min(width for _, width in sizes[index][0]) / 2 + FINGER
+        above = (other for other in range(len(tops)) if other != index and tops[other] > tops[index] - FINGER)
+        return all(
+            hypot(*(centers[other] - centers[index])[:2]) >= room + min(width for _, width in sizes[other][0]) / 2
+            for other in above
+        )
+
+    beside = [index for index in range(len(tops)) if index != middle and is_free(index)]
+    return sorted(beside, key=lambda index: hypot(*(centers[index] - position)[:2]))[:OTHER_PARTS]
 
 
 def _bottom(model: ObjectModel, position: FloatArray, rotation: FloatArray) -> float:

@@ -95,6 +95,11 @@ def present_pose(arm: Arm, joints: FloatArray) -> ToolPose:
     return ToolPose(hypot(position[0], position[1]), direction, float(position[2]), atan2(sin(turn), cos(turn)))
 
 
+def yaw_of(base: Pose, pose: ToolPose) -> float:
+    """Return the rotation (rad) of a tool about the vertical, world frame."""
+    return base.yaw + pose.bearing + pose.turn
+
+
 def frame_of(pose: ToolPose) -> tuple[FloatArray, FloatArray]:
     """Return position (3,) and rotation matrix (3, 3) of a tool pose in the base frame."""
     yaw = pose.bearing + pose.turn

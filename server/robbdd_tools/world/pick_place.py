@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
+from math import cos, hypot, pi, remainder, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from robbdd_tools.world.arm_kinematics import Unreachable
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
-from robbdd_tools.world.motion import ToolPose, tool_pose
+from robbdd_tools.world.motion import ToolPose, tool_pose, yaw_of
 from robbdd_tools.world.put_down import Target, has_room, on_tables, targets
 from robbdd_tools.world.reaching import (
     Approach,
@@ -45,6 +46,8 @@ PATIENCE = 30.0
 """Maximum wait for an object to come to rest, s."""
 ROOM = 0.02
 """Room (m) below an object that is carried from or to a high support (``reaching.HIGH``)."""
+ASIDE = 2e-3
+"""If the tool grips an object at most this far (m) from its position, it puts it down as if there were no distance."""
 RISE = 1e-3
 """If the travelling height is more than this (m) above the tool, it rises first: on a slant it could hit the place."""
 
@@ -67,6 +70,7 @@ class PickPlace(ArmControl):
         self._emit = emit
         self._note_choice = note_choice
         self._grasp: Grasp | None = None
+        self._yaw = 0.0
         self._from_high = False
 
     def pick(self, name: str) -> Step:
@@ -86,6 +90,7 @@ class PickPlace(ArmControl):
         best = yield from self._approach(name)
         yield from self._take(best, name, since)
         self.held, self._grasp = name, best.grasp
+        self._yaw = yaw_of(self.robot.base, best.at)
         self._from_high = is_high(self.robot, best.at, best.grasp.below)
         yield from self.move(best.above)
 
@@ -162,10 +167,12 @@ class PickPlace(ArmControl):
         raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
 
     def _choose_grasp(self, name: str) -> Approach:
-        """Return the grasp with the most room for the hand."""
+        """Return the grasp with the most room for the hand, if possible of the part in the object's middle."""
         missed = Obstruction()
         found = approaches(self.simulation, self.robot, name, missed=missed)
-        best = min(found, key=lambda one: (round(one.depth, 4), abs(one.at.turn)), default=None)
+        best = min(
+            found, key=lambda one: (round(one.depth, 4), one.grasp.part is not None, abs(one.at.turn)), default=None
+        )
         if best is None:
             raise BehaviourError(f"{self.robot.name} cannot reach {name}{missed}")
         return best
@@ -216,7 +223,7 @@ class PickPlace(ArmControl):
         top = max(robot.model.travel_height, height)
         closing = target.closing if target.closing is not None else grasp.closing
         while height <= top:
-            found = self._reached(tool_pose(robot.base, np.array([x, y, height]), closing), name, grasp, missed)
+            found = self._reached(np.array([x, y, height]), closing, name, grasp, missed)
             if found is None:
                 return None
             pose, joints = found
@@ -228,15 +235,29 @@ class PickPlace(ArmControl):
         return None
 
     def _reached(
-        self, wanted: ToolPose, name: str, grasp: Grasp, missed: Obstruction
+        self, place: FloatArray, closing: float, name: str, grasp: Grasp, missed: Obstruction
     ) -> tuple[ToolPose, FloatArray] | None:
-        """Return the pose, or the same pose with both fingers interchanged, and the joint positions (rad) there."""
-        for pose in either_way(self.arm, wanted):
+        """Return a tool pose that brings an object to a place (m), and the joint positions (rad) there."""
+        for pose in self._bringing(place, closing, grasp):
             try:
                 return pose, joints_at(self.arm, self._carried_to(pose, name, grasp), pose)
             except Unreachable as error:
                 missed.note(error)
         return None
+
+    def _bringing(self, place: FloatArray, closing: float, grasp: Grasp) -> tuple[ToolPose, ...]:
+        """Return the tool poses, with either finger on either side, for an object at a place (m)."""
+        base = self.robot.base
+        if hypot(*grasp.aside) < ASIDE:
+            return either_way(self.arm, tool_pose(base, place, closing))
+        found: list[ToolPose] = []
+        for yaw in (closing - pi / 2, closing + pi / 2):
+            c, s = cos(yaw - self._yaw), sin(yaw - self._yaw)
+            x, y = grasp.aside
+            tool = place - np.array([c * x - s * y, s * x + c * y, 0.0])
+            both = either_way(self.arm, tool_pose(base, tool, closing))
+            found += [pose for pose in both if abs(remainder(yaw_of(base, pose) - yaw, 2 * pi)) < pi / 2]
+        return tuple(found)
 
     def _carried_to(self, pose: ToolPose, name: str, grasp: Grasp) -> ToolPose:
         """Return the pose above ``pose`` to which the tool carries an object, high enough to clear shapes below."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import groupby
 from math import nan, pi
 from typing import TYPE_CHECKING, Any
 
@@ -128,13 +129,13 @@ def approaches(
         # A recorded state is the truth, whatever the robot perceives.
         position, rotation = data.body(name).xpos.copy(), data.body(name).xmat.reshape(3, 3).copy()
     data = simulation.data if data is None else data
-    clearance = Clearance(simulation, robot, name, data)
     grasps = gripper_of(robot.model).grasps(name, objects[name], position, rotation)
 
     def over(at: ToolPose, grasp: Grasp) -> ToolPose:
         return over_support(simulation, robot, name, at, grasp.below)
 
-    yield from approaches_by(robot, grasps, clearance, missed, over)
+    for part, of_part in groupby(grasps, key=lambda grasp: grasp.part):
+        yield from approaches_by(robot, of_part, Clearance(simulation, robot, name, data, part), missed, over)
 
 
 def approaches_by(
