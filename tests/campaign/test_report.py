@@ -14,6 +14,7 @@ from kit import write_manifest
 from robbdd_tools.campaign.report_page import report_page
 from robbdd_tools.campaign.report_source import run_report, used_file_rows
 from robbdd_tools.cli import main
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.protocol.specs import ClauseSpec
 from robbdd_tools.run.store import RunStore
 from robbdd_tools.workbench.stored import PastRun
@@ -74,6 +75,14 @@ def test_the_worst_executions_come_first_with_the_command_that_repeats_them(stor
     assert re.findall(r"[✗?] (?:violated|unknown) (e:v -- \d)", found.text) == ["e:v -- 4", "e:v -- 2", "e:v -- 3"]
     assert "simulate it again: robbdd replay 1 --scenario 'e:v -- 4'" in found.text
     assert "1 more do not hold" not in found.text
+
+
+def test_contacts_that_no_clause_is_about_are_listed(store: RunStore) -> None:
+    shelf = Contact("e:arm", "", "e:shelf", 1.5, 12.0, 1.6, 0.25)
+    touching, clear = (record_run(store, [-0.1], contacts=contacts) for contacts in ((shelf,), ()))
+    text = Page(report_page(run_report(PastRun(touching)))).text
+    assert "Contacts that no clause is about: arm touches shelf at 1.50 s: at most 12.0 N at 1.60 s, 0.25 N s" in text
+    assert "Contacts that" not in Page(report_page(run_report(PastRun(clear)))).text
 
 
 def test_of_many_executions_that_do_not_hold_the_worst_are_shown(store: RunStore) -> None:

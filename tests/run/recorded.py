@@ -52,7 +52,12 @@ def execution(index: int, verdict: str = "holds") -> Iterator[RunMessage]:
 
 
 def record_run(
-    store: RunStore, margins: Sequence[float | None], *, clauses: tuple[ClauseSpec, ...] = CLAUSES[:1], seed: int = 1
+    store: RunStore,
+    margins: Sequence[float | None],
+    *,
+    clauses: tuple[ClauseSpec, ...] = CLAUSES[:1],
+    seed: int = 1,
+    contacts: tuple[Contact, ...] = (),
 ) -> StoredRun:
     """Record a run with one execution per margin (m) of its clauses; ``None`` is an unknown verdict."""
     specs = tuple(replace(spec(index), clauses=clauses, seed=seed) for index in range(len(margins)))
@@ -67,7 +72,7 @@ def record_run(
             unit = "" if margin is None else "m"
             for clause in clauses:
                 recording.take(ClauseJudged(index, clause.line, verdict, margin, unit, None, f"{margin}", None))
-            recording.take(ScenarioFinished(index, 4.25, 1.5, 0.5))
+            recording.take(ScenarioFinished(index, 4.25, 1.5, 0.5, contacts=contacts))
         recording.end("")
     return place
 

@@ -14,7 +14,7 @@ from robbdd_tools.campaign.value_bins import bins_of, in_order
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.plot import plot
 from robbdd_tools.run.readable import title
-from robbdd_tools.run.report import margin, plain_sentence, value_words
+from robbdd_tools.run.report import contact_words, margin, plain_sentence, value_words
 
 if TYPE_CHECKING:
     from robbdd_tools.campaign.report_moments import Moment
@@ -87,7 +87,10 @@ class JudgedRow:
 
 @dataclass(frozen=True, slots=True)
 class FailedRow:
-    """An execution that does not hold. ``command`` simulates it again; empty if there is none."""
+    """An execution that does not hold.
+
+    ``command`` simulates it again; empty if there is none. ``contacts`` are contacts that no clause is about.
+    """
 
     name: str
     values: str
@@ -96,6 +99,7 @@ class FailedRow:
     command: str
     clauses: tuple[JudgedRow, ...]
     moment: Moment | None
+    contacts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,7 +209,8 @@ def _failed_row(source: ReportSource, result: ExecutionResult, *, is_repeated: b
     name = (
         f"{result.name.partition(' (repetition ')[0]} (repetition {result.repetition})" if is_repeated else result.name
     )
-    return FailedRow(name, values, result.verdict, result.seed, source.command(result), clauses, moment)
+    contacts = tuple(map(contact_words, result.contacts))
+    return FailedRow(name, values, result.verdict, result.seed, source.command(result), clauses, moment, contacts)
 
 
 def _reason(clause: ClauseResult) -> str:

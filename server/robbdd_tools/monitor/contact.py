@@ -9,8 +9,9 @@ from dataclasses import dataclass
 class Contact:
     """A contact of an agent with something else.
 
-    If ``part`` is not empty, the object ``part`` in its grip has the contact. - ``time``: the first sample after the
-    contact began (s).
+    If ``part`` is not empty, the object ``part`` in its grip has the contact.
+
+    - ``time``: the first sample after the contact began (s).
     - ``peak``: the largest force (N).
     - ``peak_time``: the first sample after the largest force (s).
     - ``impulse``: the force integrated over the whole contact (N s).

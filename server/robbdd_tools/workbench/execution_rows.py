@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 from robbdd_tools.catalog.executable import ChosenScene, Substitution
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.specs import NO_PHYSICS
 
@@ -53,6 +54,7 @@ class ExecutionResult:
     - ``substitution``: the catalog behaviour that was executed instead of the model's implementation, or ``None``.
     - ``scene_instance``: the scene instance of a ``.scenex`` that the user chose, or ``None``.
     - ``world``: ``kinematic``, or empty for physics.
+    - ``contacts``: contacts of agents that no clause is about; none in the results of a study.
     """
 
     index: int
@@ -71,6 +73,7 @@ class ExecutionResult:
     substitution: Substitution | None = None
     scene_instance: ChosenScene | None = None
     world: str = ""
+    contacts: tuple[Contact, ...] = ()
 
     @property
     def choices(self) -> tuple[str, ...]:
@@ -131,6 +134,7 @@ def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
         Substitution(**entry["substitution"]) if entry.get("substitution") else None,
         ChosenScene(**entry["scene_instance"]) if entry.get("scene_instance") else None,
         entry.get("world", ""),
+        tuple(Contact(**one) for one in entry.get("contacts", ())),
     )
 
 
