@@ -103,6 +103,15 @@ def test_a_name_that_the_text_of_the_file_lacks_is_reported_once(cell: Path) -> 
     )
 
 
+def test_a_name_that_the_file_lacks_does_not_hide_another_fault(cell: Path) -> None:
+    rewrite(cell, ('map body <poses.foot> to "foot"', "map body <poses.foot>"), ("home: (0,", "home: (9,"))
+    rewrite(cell.with_name("five.xml"), ('<body name="foot">', '<body name="stand">'))
+    (unmapped,) = (one for one in load(cell).diagnostics if one.code == "model-name")
+    assert "no body 'foot'" in unmapped.message
+    (unusable,) = found(cell)
+    assert unusable.endswith("'yaw' is outside its limits, -3 to 3 in five.xml [unusable-model]")
+
+
 def test_code_that_makes_a_model_is_not_executed(cell: Path) -> None:
     rewrite(cell, ("model five_model as mjcf {\n            sys path = 'five.xml'", MADE))
     cell.with_name("making.py").write_text("from pathlib import Path\nPath(__file__).with_suffix('.ran').touch()\n")

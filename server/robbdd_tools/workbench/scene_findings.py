@@ -18,6 +18,7 @@ from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.processes import describe_exit
 from robbdd_tools.base.source_texts import source_state, source_xml, unsaved_source
+from robbdd_tools.checks.model_name import CODE as MODEL_NAME
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
@@ -29,8 +30,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 FIND = "robbdd_tools.agent.find_faults"
-KNOWN = {FaultKind.MODEL: {"model-file", "model-name", "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
+KNOWN = {FaultKind.MODEL: {"model-file", MODEL_NAME, "catalog-entry"}, FaultKind.POSE: {"pose", "distribution"}}
 """Kind of fault → codes of the rules that report it at a better place. Such faults are not reported again."""
+_QUOTES = "\"'"
 _TOKEN = re.compile(r"<[^>\n]*>|[\w.-]+|.")
 
 
@@ -55,9 +57,9 @@ class SceneChecker:
         if isinstance(found, str):
             message = f"the models and poses of this scene were not checked: {found}"
             return [Diagnostic(uri, Span(0, 0), Severity.WARNING, "scene-unchecked", message)]
-        codes = {one.code for one in rules if one.uri == uri}
-        unknown = (one for one in found if codes.isdisjoint(KNOWN.get(FaultKind(one.kind), ())))
-        return [_diagnostic(snapshot, uri, one) for one in unknown]
+        reported = [one for one in rules if one.uri == uri]
+        text = snapshot.document(uri).text
+        return [_diagnostic(snapshot, uri, one) for one in found if not _is_reported(one, reported, text)]
 
     def _faults(self, uri: str, request: str, instances: list[SceneInstance]) -> tuple[SceneFault, ...] | str:
         state = request + repr(list(file_states(instances)))
@@ -65,6 +67,19 @@ class SceneChecker:
         if known is None or known[0] != state:
             known = self._known[uri] = (state, _examined(request))
         return known[1]
+
+
+def _is_reported(fault: SceneFault, findings: list[Diagnostic], text: str) -> bool:
+    """Return whether one of the findings in a file's text reports a fault at a better place.
+
+    A wrong name explains only faults that are about this name.
+    """
+    codes = KNOWN.get(FaultKind(fault.kind), set())
+    reported = (one for one in findings if one.code in codes)
+    return any(
+        one.code != MODEL_NAME or f"'{text[one.span.start : one.span.end].strip(_QUOTES)}'" in fault.reason
+        for one in reported
+    )
 
 
 def declares_instance(snapshot: Snapshot, uri: str) -> bool:
