@@ -31,8 +31,8 @@ class Grasp:
     """The tool's position (3,) m, the direction (rad) across the tool, and the object's width there (m).
 
     Fingers close along this direction. ``below`` is the object's extent below the tool, m. ``aside`` is the horizontal
-    way from the tool to the object's position, m, world frame. ``part`` is the number of the shape to grip if it is not
-    in the object's middle.
+    way from the tool to the place of the object's position, m, world frame; 0 for the part in the object's middle.
+    ``part`` is the number of the shape to grip if it is another one.
     """
 
     position: FloatArray
@@ -60,7 +60,7 @@ def finger_grasps(
         directions, half_height = _directions(shape, rotation)
         grip = np.array([center[0], center[1], max(float(center[2]), float(center[2]) + half_height - DEPTH)])
         below = float(grip[2]) - _bottom(model, position, rotation)
-        aside = (float(position[0] - grip[0]), float(position[1] - grip[1]))
+        aside = (0.0, 0.0) if index == middle else (float(position[0] - grip[0]), float(position[1] - grip[1]))
         part = None if index == middle else index
         fits = ((angle, width) for angle, width in directions if width + PLAY <= stroke)
         fitting += [Grasp(grip, angle, width, below, aside, part) for angle, width in fits]
@@ -106,7 +106,12 @@ def _middle(model: ObjectModel, position: FloatArray, rotation: FloatArray) -> i
 
 
 def _parts_beside(model: ObjectModel, position: FloatArray, rotation: FloatArray, middle: int) -> list[int]:
-    """Return the numbers of other shapes with nothing of the object above them or beside them, nearest first."""
+    """Return the numbers of other shapes with nothing of the object above them or beside them, nearest first.
+
+    What carries other things has none: it is not moved by its walls.
+    """
+    if not model.graspable:
+        return []
     centers = [position + rotation @ np.array(shape.position) for shape in model.shapes]
     sizes = [_directions(shape, rotation) for shape in model.shapes]
     tops = [float(center[2]) + half for center, (_, half) in zip(centers, sizes, strict=True)]
