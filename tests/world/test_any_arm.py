@@ -21,10 +21,11 @@ from robbdd_tools.catalog.executable import (
     Realisation,
     SceneInstance,
 )
-from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.motion import ToolPose, frame_of
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
@@ -48,11 +49,11 @@ def robot(folder: Path, text: str, arm: ArmModel | None = None, name: str = "") 
     return robot_from(source(folder, text, arm, name), ARM)
 
 
-def picking(folder: Path, text: str, arm: ArmModel | None = None) -> Execution:
+def picking(folder: Path, text: str, arm: ArmModel | None = None, scene: SceneSpec | None = None) -> Execution:
     """Return the execution in which an arm from a file moves the cube into the bin."""
     instance = SceneInstance("x:cell", elements=(Realisation(ARM, (source(folder, text, arm),)),))
     execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
-    spec = replace(scenario(replace(SCENE, agents=(ARM,)), 1), execution=execution)
+    spec = replace(scenario(scene or replace(SCENE, agents=(ARM,)), 1), execution=execution)
     return Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
 
 
@@ -75,6 +76,39 @@ def test_the_fingers_of_two_actuators_are_one_gripper(tmp_path: Path) -> None:
     assert (found.gripper_actuator, found.gripper_open, found.gripper_closed) == ("ga", 0.035, 0.0)
     assert found.stroke == pytest.approx(0.07, abs=1e-3)
     assert dict(finger_motion(found).open_joints) == pytest.approx({"ja": 0.035, "jb": -0.035}, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("extra", "goes"),
+    [
+        ('<adhesion name="x" body="left" ctrlrange="1 2" gain="50"/>', True),
+        ('<adhesion name="x" body="left" ctrlrange="0 1" gain="50"/>', True),
+        ('<motor name="x" joint="left_slide" ctrlrange="-9 -5"/>', True),
+        ('<general name="x" joint="left_slide" biastype="affine" biasprm="-9 0 0"/>', True),
+        ('<motor name="x" joint="left_slide" ctrlrange="-9 9"/>', False),
+        ('<position name="x" joint="right_slide" kp="10" ctrlrange="0.01 0.02"/>', False),
+    ],
+)
+def test_actuators_that_act_although_nothing_commands_them_are_removed(tmp_path: Path, extra: str, goes: bool) -> None:
+    """The engine clamps an idle control into its range, so such pads would always stick to what they touch."""
+    own = robot(tmp_path, MJCF.replace("</actuator>", f"{extra}</actuator>"), ArmModel(actuator="grip"))
+    spec = prepared_robot(own.mjcf)
+    assert spec is not None
+    kept = {one.name for one in spec.actuators}
+    assert kept - {"x"} == {*(f"{joint}_servo" for joint in ("yaw", "shoulder", "elbow", "pitch", "roll")), "grip"}
+    assert ("x" not in kept) is goes
+    assert ("actuators that act although nothing commands them, removed: x" in changes_of(own.mjcf)) is goes
+
+
+@pytest.mark.physics
+def test_glue_on_pads_does_not_carry_what_friction_cannot(tmp_path: Path) -> None:
+    glue = "".join(f'<adhesion body="{pad}" ctrlrange="1 2" gain="50"/>' for pad in ("left", "right"))
+    slippery = (ConfigSpec(CUBE, "mass", "0.5"), ConfigSpec(CUBE, "friction", "0.1"))
+    scene = replace(SCENE, agents=(ARM,), config=slippery)
+    text = MJCF.replace("</actuator>", f"{glue}</actuator>")
+    run = picking(tmp_path, text, ArmModel(actuator="grip"), scene)
+    assert not run.run_behaviour(0)
+    assert "gripper lost" in run.trace.remark or "gripper missed" in run.trace.remark
 
 
 def test_a_gripper_that_opens_at_zero_and_closes_at_255_is_understood(tmp_path: Path) -> None:

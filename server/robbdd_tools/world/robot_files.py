@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -101,6 +102,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     tool = tool_of(spec, source, arm.tool, gripper, chain[-1])
     velocity = arm.velocity or velocity_limits(source, spec, joints, SPEED)
     _servos(spec, joints)
+    changes += _without_idle_forces(spec, {gripper.actuator}, chain)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
         body.gravcomp = 1.0 if body.name != "world" else 0.0
@@ -194,6 +196,29 @@ def _servos(spec: Any, joints: tuple[str, ...]) -> None:
             if inertias[joint] < LIGHT * damping * TIMESTEP:
                 # At its force limit, a servo of so light a joint would hit back and forth. Real drives have rotors.
                 spec.joint(joint).armature += ROTOR * damping * TIMESTEP
+
+
+def _without_idle_forces(spec: Any, used: Collection[str], chain: list[Any]) -> list[str]:
+    """Remove the other actuators that act although nothing commands them, and return what was changed.
+
+    The engine clamps an idle control into its range: pads with adhesion from 1 to 2 would always stick to a part.
+    """
+    moved = {str(joint.name) for body in chain for joint in body.joints}
+    idle = [one for one in spec.actuators if one.name not in used and str(one.target) not in moved and _acts_idle(one)]
+    names = [str(one.name) for one in idle]
+    for one in idle:
+        spec.delete(one)
+    return [f"actuators that act although nothing commands them, removed: {', '.join(names)}"] if names else []
+
+
+def _acts_idle(actuator: Any) -> bool:
+    """Return whether an actuator without a command is an adhesion or exerts a force that no position balances."""
+    if actuator.trntype == mujoco.mjtTrn.mjTRN_BODY:
+        return True
+    low, high = (float(value) for value in actuator.ctrlrange)
+    control = min(max(0.0, low), high) if low < high else 0.0
+    bias = 0.0 if actuator.biastype == mujoco.mjtBias.mjBIAS_NONE else float(actuator.biasprm[0])
+    return float(actuator.biasprm[1]) == 0.0 and float(actuator.gainprm[0]) * control + bias != 0.0
 
 
 def _is_position_servo(actuator: Any) -> bool:
