@@ -182,7 +182,8 @@ def test_each_system_has_back_ends_of_its_own(
     monkeypatch: pytest.MonkeyPatch, platform: str, names: tuple[str, ...], word: str
 ) -> None:
     # What the function sets would stay in this process: monkeypatch restores only what it has set itself.
-    monkeypatch.setattr(os, "environ", {name: value for name, value in os.environ.items() if name not in (CHOICE, KEPT)})
+    others = {name: value for name, value in os.environ.items() if name not in (CHOICE, KEPT)}
+    monkeypatch.setattr(os, "environ", others)
     monkeypatch.setattr(sys, "platform", platform)
     assert back_ends() == names
     assert word in advice()
