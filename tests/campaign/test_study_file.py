@@ -158,6 +158,15 @@ def test_all_errors_of_a_file_are_reported_at_once(tmp_path: Path) -> None:
     assert [one.split()[0] for one in errors(tmp_path, text)] == ["3:9", "4:17", "5:7", "6:8", "8:1"]
 
 
+def test_an_unknown_scenario_is_reported_once_beside_the_errors_of_levels(tmp_path: Path) -> None:
+    text = f'{HEAD}scenarios: {{ <gone> }}\nfactor bhv <x>: {{ pick-place }}\nfactor scene: {{ "no.scenex" }}\n}}'
+    assert [one.partition(";")[0] for one in errors(tmp_path, text)] == [
+        "3:14 there is no scenario 'gone'",
+        "4:19 there is no behaviour implementation 'x'",
+        "5:18 there is no file no.scenex",
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

@@ -209,14 +209,17 @@ class StudyLoader:
             if self._content.where is None:
                 return
             selection = replace(selection, where=None)
-        for word in self._content.scenarios:
-            self._plan(replace(selection, names=[word.text]), word, "scenarios")
-        combinations = self._combinations(selection)
+        # Levels are checked with the scenarios that exist, so that an unknown name is reported once.
+        named = [word.text for word in self._content.scenarios if self._has(selection, word)]
+        combinations = self._combinations(replace(selection, names=named))
         if not self.faults:
             for levels, chosen in combinations:
                 plan = self._plan(chosen, self._content.factors[0].levels[0] if levels else None, "factor")
                 if plan is not None:
                     yield Cell(levels, self._blocked(plan) if self._content.is_blocked else plan)
+
+    def _has(self, selection: Selection, scenario: Word) -> bool:
+        return self._plan(replace(selection, names=[scenario.text]), scenario, "scenarios") is not None
 
     def _blocked(self, plan: Plan) -> Plan:
         seeded = block_seeds(plan.requests[0].seed)
