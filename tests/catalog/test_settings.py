@@ -80,3 +80,35 @@ def test_a_value_of_the_wrong_type_is_told_what_it_can_be(name: str, text: str, 
     with pytest.raises(SettingError) as error:
         SETTINGS[name].read(text)
     assert wanted in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "numbers"),
+    [
+        ("ee_speed", "0.2 m/s", (0.2,)),
+        ("ee_speed", "0.2m/s", (0.2,)),
+        ("travel_height", "30 cm", (0.3,)),
+        ("mass", "250 g", (0.25,)),
+        ("contact_time", "20 ms", (0.02,)),
+        ("height_scale", "80 %", (0.8,)),
+        ("position_range", "25 cm 0.6 -400 mm 0.4 m", (0.25, 0.6, -0.4, 0.4)),
+    ],
+)
+def test_numbers_may_have_a_unit(name: str, text: str, numbers: tuple[float, ...]) -> None:
+    assert setting_of(name).read(text) == pytest.approx(numbers)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("ee_speed", "0.2 m"),
+        ("mass", "1 kg kg"),
+        ("mass", "kg 1"),
+        ("friction", "0.5 N"),
+        ("seed", "3 s"),
+        ("mass", "g"),
+    ],
+)
+def test_a_unit_of_another_dimension_is_refused(name: str, text: str) -> None:
+    with pytest.raises(SettingError, match=f"'{name}' cannot be '{text}'"):
+        setting_of(name).read(text)

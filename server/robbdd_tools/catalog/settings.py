@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.quantity_units import UNITS, si_factor, split_quantity
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -38,12 +40,12 @@ class Setting:
     judges: str = ""
 
     def read(self, text: str) -> Numbers:
-        """Return the value written as a text; raises ``SettingError``."""
+        """Return the value written as a text, in ``unit``; raises ``SettingError``."""
         named = dict(self.words).get(text.strip())
         if named is not None:
             return named
         try:
-            numbers = tuple(float(part) for part in text.split())
+            numbers = _numbers(text, self.unit)
         except ValueError:
             numbers = ()
         fits = all(self.low <= number <= self.high and not (self.whole and number % 1) for number in numbers)
@@ -61,6 +63,22 @@ class Setting:
         unit = f" {self.unit}" if self.unit else ""
         words = "".join(f", or {word}" for word, _ in self.words)
         return f"{kind} from {self.low:g} to {self.high:g}{unit}{words}"
+
+
+def _numbers(text: str, unit: str) -> Numbers:
+    """Return numbers in a unit. Each may have a unit of the same dimension: 25 cm. Raises ``ValueError``."""
+    dimension = UNITS.get(unit or "%", ("",))[0]
+    numbers: list[float] = []
+    is_measured = True
+    for word in (part for one in text.split() for part in split_quantity(one) or (one,)):
+        if word not in UNITS:
+            numbers.append(float(word))
+        elif is_measured or UNITS[word][0] != dimension:
+            raise ValueError(text)
+        else:
+            numbers[-1] *= si_factor(word) / si_factor(unit)
+        is_measured = word in UNITS
+    return tuple(numbers)
 
 
 NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
