@@ -127,6 +127,21 @@ def test_prefixes_are_claimed_once() -> None:
         ("RedCube", "cube"),
         ("bin_cubes", "bin"),
         ("big_shelf_box", "shelf"),
+        ("bottle_crate", "bin"),
+        ("ballBin", "bin"),
+        ("bin_ball", "bin"),
+        ("tray-table", "table"),
+        ("cube_on_table", "cube"),
+        ("bin_for_bolts", "bin"),
+        ("bottle-box", "box"),
+        ("hex-nut", "nut"),
+        ("nuts", "nut"),
+        ("M20_screw", "bolt"),
+        ("part1", "part"),
+        ("workpiece", "part"),
+        ("part_bin", "bin"),
+        ("red_cube_part", "cube"),
+        ("worker_item", "part"),
     ],
 )
 def test_objects_are_chosen_by_the_words_of_their_name(name: str, model: str) -> None:
@@ -138,7 +153,14 @@ def test_objects_are_chosen_by_the_words_of_their_name(name: str, model: str) ->
 def test_a_name_that_nothing_stands_for_has_no_model() -> None:
     assert CATALOG.object_for("gizmo") is None
     assert CATALOG.robot_for("gizmo") is None
-    assert CATALOG.object_for("first-aid-cabinet") is None
+    for name in ("first-aid-cabinet", "screwdriver", "doughnut", "partition"):
+        assert CATALOG.object_for(name) is None
+
+
+def test_the_name_of_a_set_selects_no_unspecific_model() -> None:
+    assert CATALOG.object_for("gizmo", ["parts"]) is None
+    assert CATALOG.object_for("part1", ["cubes"]) == CATALOG.objects["cube"]
+    assert CATALOG.object_for("gizmo", ["nut_bins"]) == CATALOG.objects["bin"]
 
 
 @pytest.mark.parametrize(
@@ -148,6 +170,7 @@ def test_a_name_that_nothing_stands_for_has_no_model() -> None:
         ("robot1", ["panda_arms"], "franka-panda"),
         ("ur10", ["panda_arms"], "ur10"),
         ("left-UR-10", [], "ur10"),
+        ("mobile_panda", [], "mobile-panda"),
         ("robot1", ["arms"], None),
     ],
 )

@@ -20,7 +20,9 @@ def told(text: str, *files: str) -> list[str]:
 
 
 def test_a_scene_says_once_what_its_elements_are() -> None:
-    assert told(SCENE) == ["bench_scene: panda as franka-panda; bench as table; tray as tray; ur10 as ur10"]
+    assert told(SCENE) == [
+        "bench_scene: bolt as bolt; panda as franka-panda; nut as nut; bench as table; tray as tray; ur10 as ur10"
+    ]
 
 
 def test_an_executable_scene_says_it_better() -> None:
@@ -30,5 +32,6 @@ def test_an_executable_scene_says_it_better() -> None:
 def test_a_scene_of_which_nothing_is_in_the_catalog_says_nothing() -> None:
     text = SCENE.replace("object bench", "object plank").replace("object tray", "object dish")
     text = text.replace("agent panda", "agent one").replace("agent ur10", "agent two")
+    text = text.replace("object bolt, object nut", "object gizmo, object gadget")
     text = text.replace("<furniture.bench>", "<furniture.plank>").replace("<furniture.tray>", "<furniture.dish>")
     assert told(text) == []

@@ -49,8 +49,10 @@ def test_the_graph_of_an_example_has_the_findings_of_its_text(example: Path, tmp
 
 
 def test_elements_without_a_model_are_warnings_if_a_scenario_uses_them(tmp_path: Path) -> None:
-    findings = found(tmp_path, MODEL, SCENE.replace("object tray", "object tray, object gizmo"))
-    assert [node for node, _ in findings["no-model"]] == ["env:bolt", "env:nut"]
+    scene = SCENE.replace("object bolt, object nut", "object one, object two")
+    model = MODEL.replace("parts.bolt", "parts.one").replace("parts.nut", "parts.two")
+    findings = found(tmp_path, model, scene.replace("object tray", "object tray, object gizmo"))
+    assert [node for node, _ in findings["no-model"]] == ["env:one", "env:two"]
     assert "it has none of the words" in findings["no-model"][0][1]
     bystander = BENCH.replace("scene (ns=env) bench_scene {", "obj set (ns=env) kit { object gizmo }\nscene (ns=env) "
                               "bench_scene { obj set <kit>")  # fmt: skip

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+import kit
 from checks.models import apply, fixes_of
-from kit import MODEL, SCENE, Fixture, fixture
+from kit import Fixture, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.features.describe import describe_path
 from robbdd_tools.features.diagnostics import all_diagnostics, fast_diagnostics
 
+SCENE = kit.SCENE.replace("object bolt, object nut", "object gizmo, object gadget")
+MODEL = kit.MODEL.replace("parts.bolt", "parts.gizmo").replace("parts.nut", "parts.gadget")
 SCENE_URI = "file:///fixture/lab.scene"
 
 
@@ -28,11 +31,11 @@ def with_scene(scene: str, model: str = MODEL) -> Fixture:
 
 
 def test_each_name_is_a_warning_that_lists_all_of_them() -> None:
-    case = fixture(MODEL)
-    assert words(case) == {"bolt": "WARNING", "nut": "WARNING"}
+    case = with_scene(SCENE)
+    assert words(case) == {"gizmo": "WARNING", "gadget": "WARNING"}
     first, second = reported(case)
-    assert "'bolt' (nor nut)" in first.message
-    assert "'nut' (nor bolt)" in second.message
+    assert "'gizmo' (nor gadget)" in first.message
+    assert "'gadget' (nor gizmo)" in second.message
     assert [related.span for related in first.related] == [second.span]
 
 
@@ -40,7 +43,7 @@ def test_a_bystander_is_an_information() -> None:
     scene = SCENE.replace("scene (ns=env) bench_scene {", "obj set (ns=env) others { object kit }\n$").replace(
         "$", "scene (ns=env) bench_scene { obj set <others>"
     )
-    assert words(with_scene(scene)) == {"bolt": "WARNING", "nut": "WARNING", "kit": "INFORMATION"}
+    assert words(with_scene(scene)) == {"gizmo": "WARNING", "gadget": "WARNING", "kit": "INFORMATION"}
 
 
 def test_what_carries_a_used_workspace_is_used() -> None:
@@ -56,15 +59,15 @@ def test_without_a_scenario_each_is_a_warning() -> None:
 def test_a_set_name_that_fits_is_enough() -> None:
     case = with_scene(SCENE.replace("parts", "cubes"), MODEL.replace("<parts", "<cubes"))
     assert reported(case) == []
-    assert "Simulated as *cube*" in (describe_path(case.snapshot, SCENE_URI, "cubes.bolt") or "")
+    assert "Simulated as *cube*" in (describe_path(case.snapshot, SCENE_URI, "cubes.gizmo") or "")
 
 
 def test_elements_of_another_file_are_reported_at_the_entry_of_the_scene() -> None:
-    sets = "ns o = 'https://example.org/o/'\nobj set (ns=o) spares { object gizmo, object gadget }\n"
+    sets = "ns o = 'https://example.org/o/'\nobj set (ns=o) spares { object widget, object doodad }\n"
     scene = 'import "other.scene"\n' + SCENE.replace("bench_scene {", "bench_scene { obj set <spares>")
     case = fixture(f"//- lab.scene\n{scene}//- other.scene\n{sets}")
     assert words(case)["spares"] == "WARNING"
-    assert any("'gadget' and 'gizmo'" in one.message for one in reported(case))
+    assert any("'doodad' and 'widget'" in one.message for one in reported(case))
 
 
 @pytest.mark.parametrize("name", ["robot", "three"])
@@ -79,19 +82,19 @@ import "lab.scene"
 ns x = 'https://example.org/x/'
 scene inst (ns=x) all { scene: <bench_scene> model world as mjcf { sys path = 'lab.xml' } }
 """
-    assert words(fixture(f"//- main.bdd\n{MODEL}{scenex}")) == {}
+    assert words(fixture(f"//- main.bdd\n{MODEL}//- lab.scene\n{SCENE}{scenex}")) == {}
 
 
 def test_the_fixes_write_the_entries_one_by_one_and_each_removes_its_finding() -> None:
-    case = fixture(MODEL)
-    for left in (["nut"], []):
+    case = with_scene(SCENE)
+    for left in (["gadget"], []):
         found = reported(case)[0]
         fix = next(one for one in fixes_of(case, found) if "as 'cube'" in one.title)
         apply(case, fix)
         assert list(words(case)) == left
     text = case.project.texts()["file:///fixture/lab.scenex"][1]
-    assert "obj <parts.bolt>" in text
-    assert "obj <parts.nut>" in text
+    assert "obj <parts.gizmo>" in text
+    assert "obj <parts.gadget>" in text
     errors = [
         one for one in all_diagnostics(case.snapshot, "file:///fixture/lab.scenex") if one.severity is Severity.ERROR
     ]

@@ -280,7 +280,10 @@ BROKEN: dict[str, list[str]] = {
         ),
         "//- main.bdd\n" + _swapped("<part> is located at <goal>, 0.5", "pred('{o} is up', o=<part>), 0.5") + _EXECUTED,
     ],
-    "no-model": [MODEL, "//- lab.scene\n" + SCENE.replace("agent panda", "agent robot")],
+    "no-model": [
+        MODEL.replace("parts.nut", "parts.gizmo") + "//- lab.scene\n" + SCENE.replace("object nut", "object gizmo"),
+        "//- lab.scene\n" + SCENE.replace("agent panda", "agent robot"),
+    ],
     "contradictory-order": [
         _swapped("0.5 seconds after <place-end>)", "from <place-end> until <pick-start>)"),
         _swapped(

@@ -88,7 +88,7 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
     [
         (
             replace(SCENE, objects=("env:gizmo",)),
-            "no model for object 'env:gizmo': .* one of apple, ball, basket, belt, bench, bin, block, ",
+            "no model for object 'env:gizmo': .* one of apple, article, ball, basket, beaker, beam, belt, bench, bin, ",
         ),
         (
             replace(SCENE, agents=("env:hal",)),

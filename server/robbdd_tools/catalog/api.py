@@ -254,11 +254,11 @@ class Behaviour:
 class ObjectModel:
     """A kind of object in the simulated world, for objects with one of ``prefixes`` in their name or their set's name.
 
-    - ``mass``: in kg; ``friction``: the coefficient of sliding friction.
-    - ``free``: true if the object can move, for example a bin that can be pushed. Other objects are fixed.
+    - ``mass``: in kg; ``friction``: the coefficient of sliding friction; ``free``: true if the object can move.
     - ``graspable``: true if the object fits into a gripper. It is placed at random unless the scene places it.
     - ``rest_height``: the height (m) of its origin above the surface below; ``region``: the workspace that it carries.
     - ``color``: RGBA in [0, 1]; ``bystander``: true if an agent that executes nothing may have the model: a person.
+    - ``whole_words``: true if only whole words of a name count; ``unspecific``: true if other models take precedence.
     """
 
     name: str
@@ -285,13 +285,11 @@ class ObjectModel:
     moving: ObjectModel | None = None
     """The moving part that this object carries, with its joint."""
     bystander: bool = False
+    whole_words: bool = False
+    unspecific: bool = False
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
-        """Return the regions of a workspace that the object carries.
-
-        If the workspace's name contains names of parts (``shelf_upper``), return these parts, else all parts, else
-        ``region``.
-        """
+        """Return the regions of a workspace: the parts that its name contains, else all parts, else ``region``."""
         named = tuple(part for part in self.parts if part.name in workspace.lower())
         return named or self.parts or (() if self.region is None else (self.region,))
 

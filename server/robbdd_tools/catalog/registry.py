@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Word boundary inside a name like ``redCube``."""
+_PREPOSITIONS = {"at", "for", "from", "in", "into", "near", "of", "on", "onto", "under", "with"}
+"""In a name, what an object is precedes such a word: ``cube_on_table``."""
 FOLDERS = ("predicates", "behaviours", "objects", "robots")
 Model = TypeVar("Model", ObjectModel, RobotModel)
 Entry = TypeVar("Entry", Predicate, Behaviour, ObjectModel, RobotModel)
@@ -48,11 +50,13 @@ class Catalog:
     def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
         """Return the object model for a scene object by its name, else by the names of its ``sets``.
 
-        A person is the last choice: an operator's table is a table.
+        Unspecific models and people are the last choice: a part bin is a bin, and an operator's table a table. The name
+        of a set selects no unspecific model, since the name of the object may say what it is.
         """
         names = (local_name, tuple(sets))
-        things = {name: model for name, model in self.objects.items() if not model.bystander}
-        return _by_names(things, *names) or _by_names(self.bystanders, *names)
+        things = {name: model for name, model in self.objects.items() if not (model.bystander or model.unspecific)}
+        unspecific = {name: model for name, model in self.objects.items() if model.unspecific}
+        return _by_names(things, *names) or _by_name(unspecific, local_name) or _by_names(self.bystanders, *names)
 
     def robot_for(self, local_name: str, sets: Iterable[str] = ()) -> RobotModel | None:
         """Return the robot model for a scene agent by its name, else by the names of its ``sets``."""
@@ -125,22 +129,46 @@ def _by_names(models: Mapping[str, Model], local_name: str, sets: Iterable[str])
 
 def _by_name(models: Mapping[str, Model], name: str) -> Model | None:
     words = re.findall(r"[a-z]+|[0-9]+", _HUMP.sub(" ", name).lower())
+    relation = next((place for place, word in enumerate(words) if word in _PREPOSITIONS), len(words))
+    return _best(models, words[:relation]) or _best(models, words)
+
+
+def _best(models: Mapping[str, Model], words: list[str]) -> Model | None:
     matches = [
-        (rank, model) for model in models.values() for prefix in model.prefixes if (rank := _rank(prefix, words))
+        (_precedence(model, rank), model)
+        for model in models.values()
+        for prefix in model.prefixes
+        if (rank := _rank(prefix, words)) is not None and (rank[0] or not _only_whole(model))
     ]
     return max(matches, key=lambda match: match[0])[1] if matches else None
 
 
-def _rank(prefix: str, words: list[str]) -> tuple[bool, bool, int] | None:
-    """Return how well a model's prefix fits the words of a name, ``None`` if it does not.
+def _precedence(model: ObjectModel | RobotModel, rank: tuple[bool, int, int]) -> tuple[bool, bool, int, int]:
+    """Return a key that is largest for the model that fits a name best.
 
-    Whole words rank first, then words at the beginning of the name, then longer words. A part of a word counts only at
-    the word's beginning or end: a cabinet is not a bin.
+    Of two objects, one that carries a workspace takes precedence, then the last word: a bin of cubes, a cube tray. Of
+    two robots, the first word does: a mobile Panda.
+    """
+    whole, place, length = rank
+    if isinstance(model, ObjectModel):
+        return whole, bool(model.spaces("")), place, length
+    return whole, False, -place, length
+
+
+def _only_whole(model: ObjectModel | RobotModel) -> bool:
+    return isinstance(model, ObjectModel) and model.whole_words
+
+
+def _rank(prefix: str, words: list[str]) -> tuple[bool, int, int] | None:
+    """Return whether a prefix fits whole words of a name, where, and its length; ``None`` if it does not fit.
+
+    A word may be plural. A part of a word counts only at the word's beginning or end: a cabinet is not a bin.
     """
     wanted = re.findall(r"[a-z]+|[0-9]+", prefix)
     count, joined = len(wanted), "".join(wanted)
-    places = [place for place in range(len(words) - count + 1) if words[place : place + count] == wanted]
+    plural = [*wanted[:-1], f"{wanted[-1]}s"]
+    places = [place for place in range(len(words)) if words[place : place + count] in (wanted, plural)]
     if places:
-        return True, places[0] == 0, len(joined)
+        return True, places[0], len(joined)
     parts = [place for place, word in enumerate(words) if word.startswith(joined) or word.endswith(joined)]
-    return (False, parts[0] == 0 and words[0].startswith(joined), len(joined)) if parts else None
+    return (False, parts[0], len(joined)) if parts else None

@@ -7,7 +7,7 @@ RADIUS, HALF = 0.022, 0.030
 
 CYLINDER = ObjectModel(
     name="cylinder",
-    prefixes=("cylinder", "can", "cup", "jar", "mug", "vial"),
+    prefixes=("cylinder", "can", "cup", "jar", "mug", "vial", "glass", "beaker", "tin"),
     shapes=(Shape(ShapeKind.CYLINDER, (RADIUS, HALF, 0.0)),),
     mass=0.090,
     friction=0.5,
