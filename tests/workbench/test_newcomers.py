@@ -140,3 +140,18 @@ def test_a_bystander_is_left_out_and_named_once_unless_a_scenex_places_it(
     ]
     assert "a:coffee_machine" in note
     assert ("b:spare_ur10" in note) is not placed
+
+
+@pytest.mark.physics
+def test_an_object_whose_name_says_nothing_more_is_simulated_and_named_once(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = folder / "cell.scene"
+    scene.write_text(scene.read_text(encoding="utf-8").replace("blueCube", "blue_item"), encoding="utf-8")
+    model = folder / "handover.bdd"
+    model.write_text(model.read_text(encoding="utf-8").replace("blueCube", "blue_item"), encoding="utf-8")
+    main(["run", str(model), "--no-store", "--where", "what = 'blue_item' and dest = 'left_zone'", "--repeat", "2"])
+    said = capsys.readouterr()
+    notes = [line for line in (said.out + said.err).splitlines() if "say nothing more" in line]
+    assert notes == ["warning: simulated as 'part' of the catalog, as their names say nothing more: a:blue_item"]
+    assert "there is no model" not in said.out

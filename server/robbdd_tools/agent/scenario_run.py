@@ -131,7 +131,7 @@ class ScenarioRun:
                 if again and not self._execution.simulated:
                     text = f"{self._spec.name}: {again} initial places overlapped and were resampled"
                     self._channel.send(LogLine("info", text))
-                self._report_left_out(self._execution)
+                self._report_cast(self._execution)
                 self._show(self._execution)
                 self._pauses.begin(self._index, self._spec, self._watched, self._execution)
             except SceneError as error:
@@ -143,13 +143,20 @@ class ScenarioRun:
         steps = {**self._calls, **{line: EventOccurrence(event) for line, event in self._events.items()}}
         return calls_in_order((steps[line], self._known.get(line)) for line in sorted(steps))
 
-    def _report_left_out(self, execution: Execution) -> None:
-        """Report each element that is not simulated once."""
-        new = [name for name in execution.simulation.world.cast.left_out if name not in self._courses.left_out]
-        self._courses.left_out.update(new)
-        if new:
-            text = f"not simulated, as no clause uses them and no .scenex places them: {', '.join(new)}"
-            self._channel.send(LogLine("warning", text))
+    def _report_cast(self, execution: Execution) -> None:
+        """Report each element once that is not simulated, or that has an unspecific model."""
+        cast = execution.simulation.world.cast
+        remarks = dict.fromkeys(cast.left_out, "not simulated, as no clause uses them and no .scenex places them")
+        for name, model in cast.objects.items():
+            if model.unspecific:
+                remarks[name] = f"simulated as '{model.name}' of the catalog, as their names say nothing more"
+        new: dict[str, list[str]] = {}
+        for name, remark in remarks.items():
+            if name not in self._courses.reported:
+                new.setdefault(remark, []).append(name)
+        self._courses.reported.update(remarks)
+        for remark, names in new.items():
+            self._channel.send(LogLine("warning", f"{remark}: {', '.join(names)}"))
 
     def _show(self, execution: Execution) -> None:
         """Open a viewer window if it is requested. A failure does not affect verdicts."""

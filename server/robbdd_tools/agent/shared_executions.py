@@ -30,8 +30,8 @@ class SharedExecutions:
 
     def __init__(self) -> None:
         self._kept: dict[str, BehaviourRun] = {}
-        self.left_out: set[str] = set()
-        """Elements already reported as left out."""
+        self.reported: set[str] = set()
+        """Elements already reported as not simulated, or as simulated by an unspecific model."""
 
     def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> BehaviourRun:
         """Return the ``BehaviourRun`` of a scenario, a new one unless the scenario shares an earlier one.
