@@ -80,6 +80,40 @@ def test_an_index_is_no_name_if_the_lists_are_of_different_lengths(tmp_path: Pat
     assert f"{words}; record names with them" in found.remarks
 
 
+A, B, C = (0.40, 0.1, 0.82), (0.40, 0.3, 0.82), (0.55, -0.2, 0.82)
+
+
+@pytest.mark.parametrize("after", [[B, A, C], [B, C, A], [A, C, B]])
+def test_an_index_is_no_name_if_the_poses_change_their_order(after: list[Any], tmp_path: Path) -> None:
+    lists = [[A, B, C], [A, B, C], after, after]
+    blocks = [poses("/blocks", one, stamp=float(number)) for number, one in enumerate(lists)]
+    found = read(tmp_path, [*blocks, pose("/mug", (0, 0, 0), stamp=1.0)])
+    assert set(found.tracks) == {"mug"}
+    (remark,) = [one for one in found.remarks if "/blocks" in one]
+    assert "change their order, so an index is not always the same thing: they are not used; record names" in remark
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        [A, (0.39, 0.11, 0.82), C],  # one thing is put beside another
+        [(0.55, 0.1, 0.82), (0.55, 0.3, 0.82), (0.70, -0.2, 0.82)],  # all ride on a belt
+        [(0.402, 0.099, 0.82), (0.401, 0.302, 0.821), (0.549, -0.202, 0.82)],  # noise
+    ],
+)
+def test_things_that_move_keep_their_indices(after: list[Any], tmp_path: Path) -> None:
+    blocks = [poses("/blocks", one, stamp=float(number)) for number, one in enumerate([[A, B, C], after])]
+    assert set(read(tmp_path, blocks).tracks) == {"blocks/0", "blocks/1", "blocks/2"}
+
+
+@pytest.mark.parametrize("topic", ["/plan/next_event", "/commands", "/arm/goal_state", "/requested"])
+def test_texts_about_plans_report_no_events(topic: str, tmp_path: Path) -> None:
+    said = [text("pick-end", 1.0, topic), text("pick-start", 0.5, "/events"), pose("/mug", (0, 0, 0), stamp=1.0)]
+    found = read(tmp_path, said)
+    assert [one.text for one in found.texts] == ["pick-start"]
+    assert any(f"texts on '{topic}' may say what is planned" in one for one in found.remarks)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_detections_are_frames_of_their_ids_or_else_of_their_likeliest_class(kind: str, tmp_path: Path) -> None:
     messages = [detected([("7", "cup", (1, 0, 0)), ("", "plate", (2, 0, 0))], time) for time in (1.0, 1.5)]

@@ -40,7 +40,7 @@ def _pose_in_frame(contents: RosContents, topic: str, received: int, message: An
 
 def _poses_in_frame(contents: RosContents, topic: str, received: int, message: Any) -> None:
     time = _moved(contents, _stamp(message["timestamp"])), received
-    frames = contents.lists.unnamed(topic, len(message["poses"]))
+    frames = contents.lists.unnamed(topic, [_pose(one) for one in message["poses"]])
     for frame, pose in zip(frames, message["poses"], strict=True):
         contents.found.pose(topic, frame, message["frame_id"], time, _pose(pose))
 

@@ -23,7 +23,11 @@ BASES = frozenset({"base", "baselink", "basefootprint", "odom", "map", "world", 
 """Usual names of frames that are never a tool, without separators."""
 FIRST_LINK = "link0"
 INTENDED = frozenset(
-    ("goal", "target", "desired", "setpoint", "command", "commanded", "cmd", "plan", "planned", "reference", "expected")
+    (
+        *("goal", "goals", "target", "targets", "desired", "setpoint", "setpoints", "command", "commands", "commanded"),
+        *("cmd", "cmds", "plan", "plans", "planned", "reference", "expected", "request", "requests", "requested"),
+        *("next", "upcoming", "queue", "queued", "schedule", "scheduled", "todo"),
+    )
 )
 """Words in the names of topics and frames with planned, not measured data."""
 _SENTENCE = re.compile(r".*\s.*[#/:]|.*[#/:]\s", re.DOTALL)
@@ -115,6 +119,11 @@ def _is_intended(frame: str, name: str) -> bool:
     """Return whether a frame is planned and not measured, judged by the words of its path except the element's name."""
     others = [part for part in frame.split("/") if plain_word(part) != plain_word(name)]
     return not INTENDED.isdisjoint(word for part in others for word in _SEPARATORS.split(part.casefold()))
+
+
+def is_intended_topic(topic: str) -> bool:
+    """Return whether the texts on a topic may say what is planned, not what happened, judged by its words."""
+    return _is_intended(topic, "")
 
 
 def tool_frame_of(agent: str, frames: Iterable[str], stated: Mapping[str, str]) -> str:

@@ -6,9 +6,15 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robbdd_tools.catalog.api import FloatArray
+
+SHORTER = 0.005
+"""The least way (m) that two things save by an exchange of their indices, if this is not due to noise."""
 Pose = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 """Position (m) and orientation (w, x, y, z)."""
 
@@ -23,20 +29,31 @@ class PoseLists:
     """The names of things in the lists of each topic.
 
     A name identifies a thing only if it never has two places at one time. A thing without a name is named by its index.
-    The index identifies the thing only if all lists of the topic have the same length.
+    The index identifies the thing only if all lists of the topic have the same length and the things keep their order:
+    between two lists, no two of them would have moved less with exchanged indices.
     """
 
     nameless: set[str] = field(default_factory=set[str])
     """Topics on which a thing has neither an identity nor a class."""
+    _places: dict[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
+    _reordered: dict[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
     _lengths: dict[str, set[int]] = field(default_factory=dict[str, set[int]])
     _twice: dict[str, str] = field(default_factory=dict[str, str])
     _last: dict[str, tuple[int, tuple[float, float, float]]] = field(
         default_factory=dict[str, tuple[int, tuple[float, float, float]]]
     )
 
-    def unnamed(self, topic: str, count: int) -> list[str]:
+    def unnamed(self, topic: str, poses: Sequence[Pose]) -> list[str]:
         """Return the frames of the things in a list without names."""
-        self._lengths.setdefault(topic.strip("/"), set()).add(count)
+        name, count = topic.strip("/"), len(poses)
+        self._lengths.setdefault(name, set()).add(count)
+        places = np.array([place for place, _ in poses], dtype=float).reshape(count, 3)
+        before = self._places.get(name)
+        if name not in self._reordered and before is not None and len(before) == count:
+            exchanged = _exchanged(before, places)
+            if exchanged is not None:
+                self._reordered[name] = exchanged
+        self._places[name] = places
         return [frame_in(topic, str(index)) for index in range(count)]
 
     def named(self, topic: str, names: Sequence[str]) -> list[str]:
@@ -55,7 +72,8 @@ class PoseLists:
     def ambiguous(self, frame: str) -> bool:
         """Return whether a frame may stand for different things."""
         topic, _, name = frame.rpartition("/")
-        return frame in self._twice or (name.isdigit() and len(self._lengths.get(topic, ())) > 1)
+        is_disordered = topic in self._reordered or len(self._lengths.get(topic, ())) > 1
+        return frame in self._twice or (name.isdigit() and is_disordered)
 
     def remarks(self) -> list[str]:
         """Return a sentence on each topic with ambiguous frames. It says how to record the topic."""
@@ -65,9 +83,23 @@ class PoseLists:
             for topic, lengths in self._lengths.items()
             if len(lengths) > 1
         ]
+        for topic, (one, other) in self._reordered.items():
+            words = "change their order, so an index is not always the same thing: they are not used; record names with them"
+            found.append(f"the poses on '/{topic}' (such as {one} and {other}) {words}")
         for frame, topic in self._twice.items():
             words = "is at two places at one time, so it is not used; record an id for each thing"
             found.append(f"'{frame}' on '{topic}' {words}")
         for topic in sorted(self.nameless):
             found.append(f"things on '{topic}' have neither an id nor a class, so they are not used")
         return found
+
+
+def _exchanged(before: FloatArray, after: FloatArray) -> tuple[int, int] | None:
+    """Return two indices of places (n, 3) in m whose exchange makes the ways of both things shorter together."""
+    ways = np.linalg.norm(after[:, None] - before[None], axis=2)
+    own = np.diag(ways)
+    saved = own[:, None] + own[None] - ways - ways.T
+    if not saved.size or not np.nanmax(saved, initial=0.0) > SHORTER:
+        return None
+    one, other = divmod(int(np.nanargmax(saved)), len(after))
+    return min(one, other), max(one, other)

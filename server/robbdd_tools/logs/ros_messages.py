@@ -11,6 +11,7 @@ from robbdd_tools.logs.action_goals import ROS1_STATES, ROS2_STATES, ActionGoals
 from robbdd_tools.logs.diagnostics import Diagnostics
 from robbdd_tools.logs.frame_sources import STATIC
 from robbdd_tools.logs.log_collector import LogCollector
+from robbdd_tools.logs.log_names import is_intended_topic
 from robbdd_tools.logs.pose_lists import PoseLists
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ class RosContents:
         self.ahead = 0
         """The clock of the next messages' headers is ahead by this (ns)."""
         self._diagnostics = Diagnostics()
+        self._plans: set[str] = set()
 
     def transforms(self, topic: str, received: int, message: Any) -> None:
         """Take the transforms of ``TFMessage``; those of ``/tf_static`` hold at all times."""
@@ -61,7 +63,7 @@ class RosContents:
 
     def poses(self, topic: str, received: int, message: Any) -> None:
         """Take a list of poses without names: ``topic/0``, ``topic/1`` …"""
-        frames = self.lists.unnamed(topic, len(message.poses))
+        frames = self.lists.unnamed(topic, [_pose(one) for one in message.poses])
         for frame, one in zip(frames, message.poses, strict=True):
             self._pose(topic, frame, received, message.header, one)
 
@@ -96,8 +98,11 @@ class RosContents:
         return name
 
     def text(self, topic: str, received: int, message: Any) -> None:
-        """Take a text, which may report an event."""
-        self.found.text(topic, received, str(message.data))
+        """Take a text, which may report an event, unless its topic is one of plans."""
+        if is_intended_topic(topic):
+            self._plans.add(topic)
+        else:
+            self.found.text(topic, received, str(message.data))
 
     def log_line(self, topic: str, received: int, message: Any) -> None:
         """Take a line of a program's log, which may report an event."""
@@ -161,6 +166,7 @@ class RosContents:
             remarks=(
                 *(HOW_STAMPED, *self.remarks, *found.remarks, *self.lists.remarks(), *self.goals.remarks),
                 *(_shapeless(topic, names) for topic, names in self.shapeless.items()),
+                *(_planned(topic) for topic in sorted(self._plans)),
             ),
         )
 
@@ -243,6 +249,11 @@ def _detected_pose(one: Any) -> Any:
     best = max(one.results, key=lambda result: float(getattr(result, "hypothesis", result).score))
     place = best.pose.pose.position
     return best.pose.pose if any((place.x, place.y, place.z)) else one.bbox.center
+
+
+def _planned(topic: str) -> str:
+    words = f"texts on '{topic}' may say what is planned, not what happened, so they report no events"
+    return f"{words}; if they do, write --event 'EVENT={topic} is TEXT'"
 
 
 def _shapeless(topic: str, names: set[str]) -> str:
