@@ -112,7 +112,11 @@ def test_a_joint_without_limits_jumps_by_whole_turns() -> None:
         ("stamp,frame,x,y,z\n", {"time": "stmp"}, "drive.csv:1: there is no column 'stmp'; it has: stamp, frame"),
         ("stamp,frame,x,y,z\n", {"when": "stamp"}, "'when' is no column of a table; the columns are time, frame"),
         ("time [mm],elbow\n", {}, "drive.csv:1: 'mm' is no unit of column 'time'"),
-        ("time,elbow\n1,2\nnoon,3\n", {}, "drive.csv:3: column 'time' must be a number, but is 'noon'"),
+        (
+            "time,elbow\n1,2\nnoon,3\n",
+            {},
+            "drive.csv:3: column 'time' must be a number, or a date and a time, but is 'noon'",
+        ),
     ],
 )
 def test_a_table_with_other_columns_is_refused_with_its_place(

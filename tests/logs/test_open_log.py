@@ -183,7 +183,10 @@ def test_a_log_without_anything_to_judge_is_refused(tmp_path: Path) -> None:
         ("x,y\n1,2\n", "drive.csv:1: there is no column 'time'"),
         ("", "drive.csv:1: there is no column 'time'"),
         ("time,frame,x,y,z\n0,cup,1,2,three\n", "drive.csv:2: column 'z' must be a number, but is 'three'"),
-        ("time,frame,x,y,z\nnoon,cup,1,2,3\n", "drive.csv:2: column 'time' must be a number, but is 'noon'"),
+        (
+            "time,frame,x,y,z\nnoon,cup,1,2,3\n",
+            "drive.csv:2: column 'time' must be a number, or a date and a time, but is 'noon'",
+        ),
         ("time,event\n", "contains no message that can be judged"),
     ],
 )
@@ -191,6 +194,67 @@ def test_a_table_that_cannot_be_read_is_refused_with_its_line(content: str, word
     path = tmp_path / "drive.csv"
     path.write_text(content, encoding="utf-8")
     assert words in refused(path)
+
+
+def table(folder: Path, text: str, columns: dict[str, str] | None = None) -> LogContents:
+    path = folder / "drive.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_log(path, columns)
+
+
+@pytest.mark.parametrize("cell", ["", "nan", "inf"])
+def test_a_missing_coordinate_is_a_gap(cell: str, tmp_path: Path) -> None:
+    found = table(tmp_path, f"time,frame,x,y,z\n0,cup,1,2,3\n1,cup,{cell},2,3\n2,cup,4,2,3\n")
+    assert found.tracks["cup"].times.tolist() == [0.0, 2.0]
+
+
+@pytest.mark.parametrize("cell", ["", "nan", "inf", "1700000000000000000"])
+def test_a_time_that_cannot_be_is_refused(cell: str, tmp_path: Path) -> None:
+    with pytest.raises(UnreadableLog) as caught:
+        table(tmp_path, f"time,frame,x,y,z\n{cell},cup,1,2,3\n")
+    assert "drive.csv:2: column 'time' " in str(caught.value)
+    assert ("say --column 'time=time [ns]'" in str(caught.value)) is cell.startswith("17")
+
+
+@pytest.mark.parametrize(
+    ("title", "columns", "times"),
+    [
+        ("time", {"time": "time [ns]"}, ("1700000000000000000", "1700000000500000000")),
+        ("stamp (ns)", {"time": "stamp"}, ("1700000000000000000", "1700000000500000000")),
+        ("time [us]", {}, ("1700000000000000", "1700000000500000")),
+        ("Time", {}, ("2026-01-02T10:00:00.25Z", "2026-01-02T10:00:00.750000001Z")),
+        ("time", {}, ("2026-01-02 10:00:00", "2026-01-02 10:00:00,5")),
+    ],
+)
+def test_times_have_a_unit_or_are_dates(
+    title: str, columns: dict[str, str], times: tuple[str, str], tmp_path: Path
+) -> None:
+    text = f"{title}\tframe\tX\tY\tZ\n{times[0]}\tcup\t1\t2\t3\n{times[1]}\tcup\t1\t2\t3\n"
+    assert table(tmp_path, text, columns).tracks["cup"].times.tolist() == pytest.approx([0.0, 0.5], abs=1e-6)
+
+
+def test_numbers_have_decimal_commas_if_columns_are_separated_otherwise(tmp_path: Path) -> None:
+    found = table(tmp_path, "time;frame;x;y;z;elbow\n0,5;cup;-1,25;2;3;0,75\n")
+    assert found.tracks["cup"].positions.tolist() == [[-1.25, 2.0, 3.0]]
+    assert found.joints["drive.csv"]["elbow"].positions.tolist() == [0.75]
+
+
+def test_angles_with_units_are_the_orientation(tmp_path: Path) -> None:
+    head, row = "time,frame,x,y,z,roll [deg],pitch [deg],yaw [deg]", "0,cup,1,2,3,90,0,90"
+    ((w, x, y, z),) = table(tmp_path, f"{head}\n{row}\n").tracks["cup"].orientations
+    # First about x, then about the fixed z: the cup's own z lies along world x.
+    assert (w, x, y, z) == pytest.approx((0.5, 0.5, 0.5, 0.5))
+    found = table(tmp_path, f"{head.replace(' [deg]', '')}\n{row}\n")
+    assert np.isnan(found.tracks["cup"].orientations).all()
+    assert any("or roll, pitch and yaw with their unit: 'roll [deg]'" in one for one in found.remarks)
+
+
+def test_an_orientation_of_zeros_is_named(tmp_path: Path) -> None:
+    found = table(tmp_path, "time,frame,x,y,z,qw,qx,qy,qz\n0,cup,1,2,3,0,0,0,0\n1,cup,1,2,3,0,0,0,0\n")
+    assert np.isnan(found.tracks["cup"].positions).all()
+    assert any(
+        "the place of 'cup' is not known: the quaternions of its poses have no length" in one for one in found.remarks
+    )
 
 
 def test_other_paths_are_no_logs(tmp_path: Path) -> None:

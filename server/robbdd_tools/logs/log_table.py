@@ -1,15 +1,16 @@
 """Read logs that are tables (CSV or Parquet): one row for each time at which something was recorded.
 
-The columns are ``time`` (s); for a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally ``qx``, ``qy``, ``qz``,
-``qw`` and ``parent``; for an event ``event``. Every other column with numbers may be a joint (rad, or m for a sliding
-joint). A title may end with another unit in brackets: ``elbow [deg]``. A row may have one or several of these.
+The columns are ``time`` (s, or a date and a time); for a pose ``frame``, ``x``, ``y``, ``z`` (m), and optionally
+``qx``, ``qy``, ``qz``, ``qw`` (or ``roll``, ``pitch``, ``yaw`` with their unit) and ``parent``; for an event ``event``.
+Every other column with numbers may be a joint (rad, or m for a sliding joint). A title may end with another unit in
+brackets: ``elbow [deg]``. A row may have one or several of these.
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Mapping
-from math import nan
+from math import isfinite, isnan, nan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,8 @@ from robbdd_tools.base.files import open_regular
 from robbdd_tools.logs.joint_tracks import JointBuilder
 from robbdd_tools.logs.log_contents import LogContents, TextStamp, UnreadableLog
 from robbdd_tools.logs.parquet_table import PARQUET, parquet_rows, parquet_titles
-from robbdd_tools.logs.table_columns import POSITION, TURN, Columns, columns_of
+from robbdd_tools.logs.table_cells import quaternion_of, read_date, read_number
+from robbdd_tools.logs.table_columns import ANGLES, POSITION, TURN, Columns, columns_of
 from robbdd_tools.logs.track_builder import TrackBuilder
 
 if TYPE_CHECKING:
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 
 WORLD = "world"
 UNKNOWN_TURN = (nan, nan, nan, nan)
+LATEST = 1e11
+"""Later times, in s, are times in another unit: this is after the year 5000."""
 MAX_LISTED = 8
 DELIMITERS = (",", ";", "\t")
 
@@ -32,9 +36,12 @@ DELIMITERS = (",", ";", "\t")
 class Row:
     """A row of a table. Its cells are read by the names of known columns, or by the titles of joints."""
 
-    def __init__(self, place: str, cells: Mapping[str, str | None], columns: Columns) -> None:
-        """``place`` is ``path:line``, for messages; ``cells`` maps titles to texts."""
+    def __init__(
+        self, place: str, cells: Mapping[str, str | None], columns: Columns, *, has_commas: bool = False
+    ) -> None:
+        """``place`` is ``path:line``, for messages; ``cells`` maps titles to texts, which may have decimal commas."""
         self._place = place
+        self._has_commas = has_commas
         self._cells = cells
         self._columns = columns
 
@@ -44,21 +51,57 @@ class Row:
         return "" if column is None else self._cells.get(column.title) or ""
 
     def number(self, name: str) -> float:
-        """Return the number in a known column, in the SI unit. Raises ``UnreadableLog`` if the text is not a number."""
+        """Return the number in a known column, in the SI unit; NaN for an empty cell.
+
+        Raises ``UnreadableLog`` if the text is not a number.
+        """
         cell = self.text(name)
+        if name in self._columns.known and not cell:
+            return nan
         try:
-            value = float(cell)
+            value = read_number(cell, self._has_commas)
         except ValueError:
-            shown = self._columns.known[name].title if name in self._columns.known else name
-            raise UnreadableLog(f"{self._place}: column '{shown}' must be a number, but is '{cell}'") from None
+            raise self._wrong(name, "must be a number") from None
         return value * self._columns.known[name].factor
+
+    def time(self) -> int:
+        """Return the time in ns. It is a number, or a date and a time by ISO 8601 (without a zone: UTC).
+
+        Raises ``UnreadableLog``.
+        """
+        cell, column = self.text("time"), self._columns.known["time"]
+        try:
+            value = read_number(cell, self._has_commas) * column.factor
+        except ValueError:
+            try:
+                return read_date(cell)
+            except ValueError:
+                raise self._wrong("time", "must be a number, or a date and a time") from None
+        if not isfinite(value):
+            raise self._wrong("time", "must be a number")
+        if not column.unit and abs(value) > LATEST:
+            unit = f"write its unit in the first line, or say --column 'time={column.title} [ns]'"
+            raise self._wrong("time", f"is in s; {unit}: it would be after the year 5000")
+        return round(value * 1e9)
+
+    def turn(self) -> tuple[float, ...]:
+        """Return the orientation (w, x, y, z) of a pose; four NaN if the row states none. Raises ``UnreadableLog``."""
+        if any(self.text(name) for name in TURN):
+            return tuple(self.number(name) for name in TURN)
+        if any(self.text(name) for name in ANGLES):
+            return quaternion_of(*(self.number(name) for name in ANGLES))
+        return UNKNOWN_TURN
+
+    def _wrong(self, name: str, words: str) -> UnreadableLog:
+        shown = self._columns.known[name].title if name in self._columns.known else name
+        return UnreadableLog(f"{self._place}: column '{shown}' {words}, but is '{self.text(name)}'")
 
     def joints(self) -> dict[str, float]:
         """Return the numbers of joints in the SI unit. Columns that have no number in this row are left out."""
         found: dict[str, float] = {}
         for name, column in self._columns.joints.items():
             try:
-                found[name] = float(self._cells.get(column.title) or "") * column.factor
+                found[name] = read_number(self._cells.get(column.title) or "", self._has_commas) * column.factor
             except ValueError:
                 continue
         return found
@@ -73,14 +116,13 @@ def read_table(path: Path, columns: Mapping[str, str] | None = None) -> LogConte
     unturned: dict[str, None] = {}
     try:
         for row in _rows(path, columns or {}):
-            time = round(row.number("time") * 1e9)
+            time = row.time()
             if row.text("event"):
                 texts.append((time, path.name, row.text("event")))
             if row.text("frame"):
                 x, y, z = (row.number(name) for name in POSITION)
-                turned = any(row.text(name) for name in TURN)
-                w, a, b, c = (row.number(name) for name in TURN) if turned else UNKNOWN_TURN
-                unturned |= {} if turned else {row.text("frame"): None}
+                w, a, b, c = row.turn()
+                unturned |= {row.text("frame"): None} if isnan(w) else {}
                 builder.add(row.text("frame"), row.text("parent") or WORLD, time, (x, y, z), (w, a, b, c))
             known = row.joints()
             joints.add(path.name, time, list(known), list(known.values()))
@@ -101,14 +143,15 @@ def _without_turn(frames: Collection[str]) -> list[str]:
     named = [f"'{one}'" for one in frames]
     listed = ", ".join(named[:MAX_LISTED]) + (f" and {len(named) - MAX_LISTED} more" if named[MAX_LISTED:] else "")
     return [
-        f"the table has no orientation of {listed}: clauses that depend on it are unknown; qw, qx, qy and qz state it"
+        f"the table has no orientation of {listed}: clauses that depend on it are unknown; qw, qx, qy and qz state it, "
+        "or roll, pitch and yaw with their unit: 'roll [deg]'"
     ]
 
 
 def read_events(path: Path) -> tuple[TextStamp, ...]:
     """Return the events of a table. Their times count from the begin of the log, in s. Raises ``UnreadableLog``."""
     try:
-        rows = [(row.number("time"), row.text("event")) for row in _rows(path, {}) if row.text("event")]
+        rows = [(row.time() / 1e9, row.text("event")) for row in _rows(path, {}) if row.text("event")]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UnreadableLog(f"{path} cannot be read as a table: {error}") from error
     if not rows:
@@ -132,4 +175,4 @@ def _rows(path: Path, stated: Mapping[str, str]) -> Iterator[Row]:
         columns = columns_of(f"{path}:1", titles, stated)
         table = csv.DictReader(lines, titles, delimiter=delimiter, skipinitialspace=True)
         for row in table:
-            yield Row(f"{path}:{table.line_num + 1}", row, columns)
+            yield Row(f"{path}:{table.line_num + 1}", row, columns, has_commas=delimiter != ",")

@@ -84,8 +84,10 @@ class PoseLists:
             if len(lengths) > 1
         ]
         for topic, (one, other) in self._reordered.items():
-            words = "change their order, so an index is not always the same thing: they are not used; record names with them"
-            found.append(f"the poses on '/{topic}' (such as {one} and {other}) {words}")
+            named = f"the poses on '/{topic}' (such as {one} and {other}) change their order"
+            found.append(
+                f"{named}, so an index is not always the same thing: they are not used; record names with them"
+            )
         for frame, topic in self._twice.items():
             words = "is at two places at one time, so it is not used; record an id for each thing"
             found.append(f"'{frame}' on '{topic}' {words}")

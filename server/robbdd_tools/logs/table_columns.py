@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robbdd_tools.base.quantity_units import UNITS, si_factor
 from robbdd_tools.logs.log_contents import UnreadableLog
 
-POSITION, TURN = ("x", "y", "z"), ("qw", "qx", "qy", "qz")
+POSITION, TURN, ANGLES = ("x", "y", "z"), ("qw", "qx", "qy", "qz"), ("roll", "pitch", "yaw")
 DIMENSIONS = {
     "time": "time",
     **dict.fromkeys(("frame", *TURN, "parent", "event"), ""),
     **dict.fromkeys(POSITION, "length"),
+    **dict.fromkeys(ANGLES, "angle"),
 }
 """Known columns → dimension of their numbers; empty for texts and numbers without a unit."""
+CLOCKS = {"us": 1e-6, "µs": 1e-6, "ns": 1e-9}
+"""Further units of times, and their sizes in s."""
 OF_JOINTS = ("angle", "length")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
 
@@ -30,7 +33,7 @@ class Column:
     @property
     def factor(self) -> float:
         """The factor that converts the unit to the SI unit."""
-        return si_factor(self.unit)
+        return CLOCKS.get(self.unit) or si_factor(self.unit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,22 +52,44 @@ def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> 
     title that does not exist, and for a unit of a known column that measures something else.
     """
     every = dict(map(_split, titles))
-    known = {name: every[name] for name in DIMENSIONS if name in every}
+    known = _known(every)
     for name, title in stated.items():
         if name not in DIMENSIONS:
             raise UnreadableLog(f"'{name}' is no column of a table; the columns are {', '.join(DIMENSIONS)}")
-        if (bare := _split(title)[0]) not in every:
+        bare, column = _split(title)
+        if bare not in every:
             raise UnreadableLog(f"{place}: there is no column '{title}'; it has: {', '.join(every)}")
-        known[name] = every[bare]
+        known[name] = replace(every[bare], unit=every[bare].unit or column.unit)
     if "time" not in known:
         words = "there is no column 'time': name the columns in the first line, or say --column time=COLUMN"
         raise UnreadableLog(f"{place}: {words}; it has: {', '.join(every)}")
     for name, column in known.items():
-        if column.unit and (column.unit not in UNITS or UNITS[column.unit][0] != DIMENSIONS[name]):
+        if column.unit and not _is_unit(column.unit, DIMENSIONS[name]):
             raise UnreadableLog(f"{place}: '{column.unit}' is no unit of column '{name}'")
     used = {column.title for column in known.values()}
     joints = {name: column for name, column in every.items() if column.title not in used and _is_of_joint(column)}
     return Columns(known, joints)
+
+
+def _known(every: Mapping[str, Column]) -> dict[str, Column]:
+    """Return the known columns by name. Titles may have capital letters if no other title has the same letters.
+
+    Roll, pitch and yaw are the orientation of a pose only together, with their units and without a quaternion; they may
+    be joints of an arm.
+    """
+    found: dict[str, Column] = {}
+    for name in DIMENSIONS:
+        alike = [title for title in every if title.casefold() == name]
+        if name in every or len(alike) == 1:
+            found[name] = every[name if name in every else alike[0]]
+    is_turned = "frame" in found and not any(name in found for name in TURN)
+    if not (is_turned and all(name in found and found[name].unit for name in ANGLES)):
+        found = {name: column for name, column in found.items() if name not in ANGLES}
+    return found
+
+
+def _is_unit(unit: str, dimension: str) -> bool:
+    return (dimension == "time" and unit in CLOCKS) or (unit in UNITS and UNITS[unit][0] == dimension)
 
 
 def _is_of_joint(column: Column) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -86,8 +86,8 @@ class TrackBuilder:
         """Return the tracks, with times in s since ``begin`` (ns).
 
         If a frame has several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion
-        has no length, are left out. If a frame has several parents at once, or different static poses, its place is
-        unknown, and a sentence about it is added to ``remarks``.
+        has no length, are left out. If a frame has no other poses, several parents at once, or different static poses,
+        its place is unknown, and a sentence about it is added to ``remarks``.
         """
         found: dict[str, Track] = {}
         for frame, parents in self._frames.items():
@@ -101,6 +101,9 @@ class TrackBuilder:
                 found[frame] = known[0]
             elif known:
                 found |= _reparented(frame, known, remarks)
+            else:
+                remarks.append(_unusable(frame, parents.values()))
+                found[frame] = _nowhere(next(iter(parents)))
         return found
 
     def _poses(self, frame: str, parent: str) -> _Poses:
@@ -124,6 +127,16 @@ def _problem(frame: str, parents: list[_Poses]) -> str:
     if any(one.static and one.differ() for one in parents):
         return f"frame '{frame}' has several static poses: its place is not known"
     return _two_parents(frame, parents[0].parent, parents[1].parent) if _has_both(parents) else ""
+
+
+def _unusable(frame: str, parents: Iterable[_Poses]) -> str:
+    """Return why no pose of a frame can be used."""
+    blocks = [values for one in parents for _, values in one.rows.blocks()]
+    if any(np.isfinite(values).all(axis=1).any() for values in blocks):
+        words = "the quaternions of its poses have no length: record an orientation, such as x = y = z = 0 and w = 1"
+    else:
+        words = "its poses have numbers that are not finite"
+    return f"the place of '{frame}' is not known: {words}"
 
 
 def _two_parents(frame: str, one: str, other: str) -> str:
