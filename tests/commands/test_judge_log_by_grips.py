@@ -164,6 +164,7 @@ def test_a_gap_of_the_signal_is_unknown(models: Path, tmp_path: Path) -> None:
         ("panda=/vacum", "the log has no topic of truth values '/vacum'; it has: /vacuum"),
         ("panda=joint thumb above 1 mm", "the log has no joint 'thumb'; it has: finger"),
         ("panda=effort slide above 1", "the log has no efforts of joint 'slide'"),
+        ("panda=joint percent above 5 mm", "joint 'percent' has positions up to 100, which are neither in m nor in rad"),
         ("panda=wrench /ft above 1 N", "the log has no wrenches on '/ft'"),
         ("pandora=/vacuum", "the scene has no element 'pandora'; nearest: panda"),
         ("panda/cub0=/vacuum", "the scene has no element 'cub0'; nearest: cube0"),
@@ -172,6 +173,8 @@ def test_a_gap_of_the_signal_is_unknown(models: Path, tmp_path: Path) -> None:
 )
 def test_a_signal_that_the_log_lacks_is_refused(grip: str, words: str, models: Path, tmp_path: Path) -> None:
     slide = joints(["slide"], [0.0], 1.0)
+    if "percent" in grip:
+        slide = joints(["percent"], [100.0], 1.0)
     kept = [one for one in (*signals(finger), *signals(SIGNALS["vacuum"][0]), slide) if one.received < 2]
     if "thumb" in grip:
         kept.remove(slide)

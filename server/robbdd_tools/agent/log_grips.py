@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 HOLDS = "holds"
 """Last part of the topic that reports the name of the object an agent holds, or an empty text: ``/panda/holds``."""
+FARTHEST = 10.0
+"""No gripper opens by more (m or rad): larger positions are percent, or counts of a motor."""
 NEAR = 0.03
 """A tool may be this far (m) from the surface of an object that it holds: cameras and calibrations have errors."""
 
@@ -136,6 +138,10 @@ class LogGrips:
             raise NoGripSignal(f"the log has no joint '{signal.source}'{_listed(every)}")
         track = every[signal.source]
         if signal.kind != EFFORT:
+            farthest = float(np.nanmax(np.abs(track.positions), initial=0.0))
+            if farthest > FARTHEST:
+                words = f"joint '{signal.source}' has positions up to {farthest:g}, which are neither in m nor in rad"
+                raise NoGripSignal(f"{words}: record it in its unit, or declare another signal")
             return track
         known = np.isfinite(track.efforts)
         if not known.any():
