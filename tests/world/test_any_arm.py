@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.motion import ToolPose, frame_of
+from robbdd_tools.world.placement import TABLE_TOP
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 from robbdd_tools.world.staging import Staging
 from world import strangers
@@ -55,6 +57,32 @@ def picking(folder: Path, text: str, arm: ArmModel | None = None, scene: SceneSp
     execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance)
     spec = replace(scenario(scene or replace(SCENE, agents=(ARM,)), 1), execution=execution)
     return Execution(spec, [pick_place(CUBE, BIN_WS, ARM)])
+
+
+SHORT = strangers.SCARA.replace('range="0 .42"', 'range="0 .2"')
+"""A SCARA whose quill moves by 0.2 m."""
+
+
+def test_the_stroke_of_an_arm_is_that_of_its_vertical_slides(tmp_path: Path) -> None:
+    low, high = arm_of(robot(tmp_path, SHORT)).stroke
+    assert (round(low, 2), round(high - low, 6)) == (0.04, 0.2)
+    assert arm_of(robot(tmp_path, strangers.SIX, name="six.xml")).stroke == (-math.inf, math.inf)
+
+
+def test_a_pose_beyond_the_stroke_is_missed_by_what_is_missing(tmp_path: Path) -> None:
+    arm = arm_of(robot(tmp_path, SHORT))
+    start = next(arm.solutions(*frame_of(ToolPose(0.5, 0.3, arm.stroke[1] - 0.01, 0.0))))
+    with pytest.raises(Unreachable, match="50 mm short"):
+        arm.solve(start, *frame_of(ToolPose(0.5, 0.3, arm.stroke[0] - 0.05, 0.0)))
+
+
+@pytest.mark.physics
+def test_an_arm_with_a_short_stroke_stands_so_low_that_it_reaches_the_table(tmp_path: Path) -> None:
+    run = picking(tmp_path, SHORT)
+    arm = run.simulation.robots[ARM]
+    assert arm.base.position[2] + arm_of(arm.model).stroke[0] == pytest.approx(TABLE_TOP)
+    assert run.run_behaviour(0), run.trace.remark
+    assert not run.trace.remark
 
 
 @pytest.mark.physics

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +36,8 @@ TURNS = 2 * np.pi
 """Limit (rad) of joints without limits in their file: the cables of real arms do not allow more either."""
 VERTICAL, AHEAD = 0.999, 0.05
 """An axis is vertical from this cosine of its tilt on; a tool is straight ahead up to this bearing (rad)."""
+LEVEL = 1e-3
+"""A joint that changes the tool's height by less than this (m per rad or m) moves it horizontally."""
 STRIDE = 0.3
 """Largest change of a joint in one iteration, rad."""
 SEEDS = 12
@@ -92,6 +94,29 @@ class Arm:
         self._data.qpos[self._places] = joints
         mujoco.mj_kinematics(self._model, self._data)
         return self._position.copy(), self._rotation.reshape(3, 3).copy()
+
+    @cached_property
+    def stroke(self) -> tuple[float, float]:
+        """The lowest and the highest tool above the base (m), if only vertical sliding joints change its height.
+
+        Such arms, SCARAs and gantries, have the same stroke everywhere. It is infinite for all others.
+        """
+        dice = np.random.default_rng(1)
+        others = [self.lower + dice.random(len(self.home)) * (self.upper - self.lower) for _ in range(2)]
+        lift = np.array([self._lift(posture) for posture in (self.home, *others)])
+        slides = ~np.array(self.turning) & (np.abs(lift) > VERTICAL).all(axis=0)
+        if self.is_published or not slides.any() or np.abs(lift[:, ~slides]).max(initial=0.0) > LEVEL:
+            return -np.inf, np.inf
+        ends = np.where(lift[0] > 0, self.lower, self.upper), np.where(lift[0] > 0, self.upper, self.lower)
+        low, high = (float(self.forward(np.where(slides, end, self.home))[0][2]) for end in ends)
+        return low, high
+
+    def _lift(self, joints: FloatArray) -> FloatArray:
+        """Return the change of the tool's height with each joint, m per rad or per m, shape (n,)."""
+        self.forward(joints)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
+        return self._jacobian[2, self._speeds].copy()
 
     def _first_joint(self) -> tuple[float, float] | None:
         """Return the bearing (rad) of the tool at home, 0 straight ahead, and the sense of the first joint.
@@ -154,7 +179,8 @@ class Arm:
         """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.
 
         Damped least squares. The redundancy pulls towards the home posture, with its first joint turned towards the
-        goal. Joints that reach a limit stay there, and the others compensate.
+        goal. Joints that reach a limit stay there, and the others compensate; those of arms with published results stay
+        where they are before it.
         """
         joints = np.minimum(np.maximum(seed, self.lower), self.upper)
         posture = self.towards(position)
@@ -185,13 +211,16 @@ class Arm:
         jacobian = self._jacobian[:, self._speeds]
         homewards = posture - joints
         moved = joints + self._step(jacobian, gap, homewards)
-        free = np.ones(len(joints))
+        free, ended = np.ones(len(joints)), np.zeros(len(joints))
         for _ in range(len(joints) - 1):
             beyond = ((moved < self.lower) | (moved > self.upper)) & (free > 0.0)
             if not beyond.any():
                 break
             free[beyond] = 0.0
-            moved = joints + self._step(jacobian * free, gap, homewards * free)
+            if not self.is_published:
+                ended[beyond] = np.minimum(np.maximum(moved, self.lower), self.upper)[beyond] - joints[beyond]
+            left = gap - jacobian @ ended if ended.any() else gap
+            moved = joints + ended + self._step(jacobian * free, left, homewards * free)
         return np.minimum(np.maximum(moved, self.lower), self.upper)
 
     def _step(self, jacobian: FloatArray, gap: FloatArray, homewards: FloatArray) -> FloatArray:

@@ -13,6 +13,7 @@ from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
+from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.fixed_obstacles import Obstacle, fixed_obstacles
@@ -113,8 +114,12 @@ def mounts(cast: Cast) -> dict[str, Pose]:
 
 
 def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
-    """Return a base at a side of a table: 0 the front, 1 opposite, 2 and 3 the ends. All have the front's distance."""
+    """Return a base at a side of a table: 0 the front, 1 opposite, 2 and 3 the ends. All have the front's distance.
+
+    The base of an arm with a vertical stroke is so low that the tool reaches the table.
+    """
     x, y, z = robot.mount
+    z = min(z, TABLE_TOP - arm_of(robot).stroke[0])
     # A user's own table has no standard place: its pose counts, and only the front is known.
     middle = table.places[0][0] if table.places else x
     half = (0.0, 0.0) if table.region is None else table.region.half[:2]

@@ -73,9 +73,9 @@ class Obstruction:
 
 
 def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
-    """Return a tool pose raised to the travelling height."""
+    """Return a tool pose raised to the travelling height or, if this is above the arm's stroke, to the stroke's end."""
     height = robot.model.travel_height - robot.base.position[2]
-    return replace(pose, height=max(height, pose.height))
+    return replace(pose, height=max(min(height, arm_of(robot.model).stroke[1] - SAME), pose.height))
 
 
 def is_high(robot: Robot, pose: ToolPose, below: float) -> bool:
