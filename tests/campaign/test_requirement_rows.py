@@ -15,7 +15,7 @@ from checks.test_requirements import CLAUSE, NEED
 from kit import EVENTS, STORY
 from robbdd_tools.campaign.requirement_rows import RequirementResult, requirement_results, requirement_summary
 from robbdd_tools.cli import main
-from robbdd_tools.graph.verified_requirements import LinkedRequirement, VerifyingVariant
+from robbdd_tools.graph.verified_requirements import LinkedRequirement, VerifyingVariant, counted_links
 from robbdd_tools.run import scheduler
 
 GRIP, STILL = {"https://x/grip": "grip"}, {"https://x/still": "still"}
@@ -51,6 +51,22 @@ def test_an_open_clause_is_no_proof() -> None:
     assert results({"grip": [0.3, UNKNOWN]}, linked(GRIP)).verdict == "unknown"
     # A clause that the run did not judge at all is open, too.
     assert results({"other": [0.3, 0.2]}, linked(GRIP)).verdict == "unknown"
+
+
+def test_a_run_of_some_scenarios_is_no_proof() -> None:
+    def verdict(scenarios: int | None, margins: Sequence[float]) -> str:
+        (link,) = counted_links([linked(GRIP)], {"https://x/v": scenarios})
+        found = results({"grip": margins}, link)
+        assert found.scenarios[0].verdict == found.verdict
+        return found.verdict
+
+    assert verdict(2, [0.3, 0.2]) == "holds"
+    assert verdict(None, [0.3, 0.2]) == "holds"
+    assert verdict(3, [0.3, 0.2]) == "not run in full"
+    assert verdict(3, [0.3, -0.2]) == "violated"
+    (link,) = counted_links([linked(GRIP)], {"https://x/v": 3})
+    found = requirement_results([link], executions({"grip": [0.3, 0.2]}))
+    assert requirement_summary(found) == "0 of 1 requirements shown, 1 not run in full"
 
 
 def test_clauses_that_could_not_fail_prove_little() -> None:

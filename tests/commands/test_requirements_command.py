@@ -12,7 +12,16 @@ from checks.test_requirements import CLAUSE, NEED
 from kit import EVENTS, SCENE, STORY
 from robbdd_tools.cli import main
 from robbdd_tools.names.project import Project
-from robbdd_tools.workbench.requirement_table import TableProblem, model_text, read_table, table_text
+from robbdd_tools.workbench.coverage_page import coverage_page
+from robbdd_tools.workbench.requirement_table import (
+    RequirementRow,
+    ScenarioCell,
+    TableProblem,
+    model_text,
+    read_table,
+    table_text,
+    verdict_of,
+)
 
 OTHER = 'Requirement (ns=t) R-2 { "Two\\nlines; \\"quoted\\", and a comma" id: "4.1/a" source: "spec.pdf §4" }\n'
 
@@ -35,6 +44,22 @@ def test_links_alone_are_enough_only_if_asked_for(tmp_path: Path, capsys: pytest
 def test_a_requirement_without_a_scenario_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["requirements", model(tmp_path, NEED + OTHER), "--links-only"]) == 1
     assert "✗ R-2 (4.1/a): no scenario\n1 of 2" in capsys.readouterr().out
+
+
+def test_a_requirement_of_which_some_scenarios_were_run_is_not_shown() -> None:
+    def verdict(*missing: int | None) -> str:
+        return verdict_of(
+            [ScenarioCell("s", "holds", 2, 2, vacuous=False, stale=False, missing=one) for one in missing]
+        )
+
+    assert verdict(0, 0) == "holds"
+    assert verdict(0, 2) == "not run in full"
+    assert verdict(None) == "not run in full"
+    cell = ScenarioCell("fetching.bench-to-tray", "holds", 2, 2, vacuous=False, stale=False, missing=2)
+    row = RequirementRow("R-1", "", "It holds.", "", (cell,), verdict_of([cell]))
+    assert not row.is_shown(links_only=False)
+    page = coverage_page([row], links_only=False)
+    assert '<td class="cell open">? 2/2<br><small>2 of 4 executed</small></td>' in page
 
 
 def test_an_exported_table_is_imported_again(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kit import MODEL
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement, Results, digests_of
 
@@ -16,6 +17,10 @@ NS = "https://example.org/t/"
 IRI = f"{NS}in-tray"
 HOLDS = Judgement("in-tray", "holds", "+31 mm", 2e6, "✔ +31 mm", "")
 VIOLATED = Judgement("in-tray", "violated", "−12 mm", -0.012, "✗ −12 mm at 3.40 s", "")
+TWO = MODEL.replace("{ <places.bench_ws>, <places.tray_ws> }", "{ <places.tray_ws> }")
+"""The model with two scenarios, instead of four."""
+ONE = TWO.replace("obj set <parts>\n", "{ <parts.bolt> }\n")
+"""The model with one scenario."""
 
 
 def judged(case: Fixture, *judgements: Judgement, iri: str = IRI) -> Findings:

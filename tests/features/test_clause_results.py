@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from features.judged_clauses import HOLDS, IRI, NS, VIOLATED, judged
+from features.judged_clauses import HOLDS, IRI, NS, ONE, TWO, VIOLATED, judged
 from gherkin_kit import edited
 from kit import MODEL, fixture
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate, row_hints
+from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, row_hints
+from robbdd_tools.features.pass_rates import pass_rate
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import (
     JudgedScenario,
@@ -37,9 +38,9 @@ TABLE = edited(
 )
 
 
-def hints(*judgements: Judgement, text: str = MODEL) -> list[str]:
-    """The hints of a text that was run as ``MODEL``."""
-    case = fixture(MODEL)
+def hints(*judgements: Judgement, text: str = MODEL, before: str = MODEL) -> list[str]:
+    """The hints of a text that was run as ``before``."""
+    case = fixture(before)
     findings = judged(case, *judgements)
     case.project.open(case.uri, 2, text)
     return [
@@ -49,7 +50,7 @@ def hints(*judgements: Judgement, text: str = MODEL) -> list[str]:
 
 
 def test_one_result_is_shown_as_it_is() -> None:
-    assert hints(HOLDS) == ["in-tray ✔ +31 mm"]
+    assert hints(HOLDS, text=ONE, before=ONE) == ["in-tray ✔ +31 mm"]
 
 
 def test_several_results_show_the_worst_and_how_many_hold() -> None:
@@ -57,6 +58,34 @@ def test_several_results_show_the_worst_and_how_many_hold() -> None:
     assert hints(VIOLATED, WORSE) == ["in-tray ✗ 0/2  worst −40 mm"]
     assert hints(HOLDS, UNKNOWN) == ["in-tray ? 1/2"]
     assert hints(UNDEFINED, UNDEFINED) == ["in-tray ? 0/2 no step definition"]
+
+
+def test_a_clause_of_a_run_of_some_scenarios_has_not_passed() -> None:
+    assert hints(HOLDS) == ["in-tray ? 1 of 4 executed  +31 mm"]
+    assert hints(HOLDS, HOLDS) == ["in-tray ? 2 of 4 executed  worst +31 mm"]
+    assert hints(HOLDS, VIOLATED) == ["in-tray ✗ 1/2  worst −12 mm"]
+    case = fixture(MODEL)
+    (hint,) = clause_hints(case.snapshot, case.uri, judged(case, HOLDS, HOLDS))
+    assert appearance(hint)["verdict"] == "unknown"
+    assert clause_diagnostics(case.snapshot, case.uri, judged(case, HOLDS, HOLDS)) == []
+
+
+def test_a_clause_of_a_variant_with_an_unknown_number_of_scenarios_has_not_passed() -> None:
+    gone = ONE.replace("{ <parts.bolt> }", "obj set <gone>")
+    assert hints(HOLDS, text=gone, before=ONE) == ["in-tray ? 1 executed, others unknown  +31 mm"]
+
+
+def test_an_edited_clause_needs_all_scenarios_again() -> None:
+    case = fixture(TWO)
+    results = Results(scenario for several in judged(case, HOLDS, HOLDS).variants.values() for scenario in several)
+    changed = edited("0.5 seconds after", "0.6 seconds after", TWO)
+    case.project.open(case.uri, 2, changed)
+    again = judged(case, HOLDS).variants
+    for scenarios in again.values():
+        results.drop(scenarios[0].scenario_key)
+        results.add(scenarios)
+    (hint,) = clause_hints(case.snapshot, case.uri, findings_of(results))
+    assert hint.label == "? 1 of 2 executed  +31 mm"
 
 
 @pytest.mark.parametrize(
@@ -68,7 +97,7 @@ def test_several_results_show_the_worst_and_how_many_hold() -> None:
     ],
 )
 def test_an_edit_elsewhere_or_of_layout_keeps_the_result(old: str, new: str) -> None:
-    assert hints(HOLDS, text=edited(old, new)) == ["in-tray ✔ +31 mm"]
+    assert hints(HOLDS, text=edited(old, new, ONE), before=ONE) == ["in-tray ✔ +31 mm"]
 
 
 def test_the_result_of_an_edited_clause_is_stale_until_the_edit_is_undone() -> None:
@@ -147,6 +176,7 @@ def test_clauses_of_every_kind_have_results() -> None:
     text = edited(
         "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
         "((in-tray: holds(<part> is located at <goal>, after <end>) or 'lamp' after <end>) and 'bell' after <end>)",
+        ONE,
     )
     case = fixture(text)
     for iri in (f"{NS}or-fetch.then.0", f"{NS}text-fetch.then.1", f"{NS}when-bhv-fetch.when"):
@@ -231,16 +261,16 @@ def test_a_pass_rate_goes_stale_with_its_variant_and_its_template() -> None:
     def rate(text: str) -> str:
         case.project.open(case.uri, 2, text)
         (variant,) = variants_of(case.snapshot, case.uri)
-        found = pass_rate(case.snapshot, variant, findings)
+        found = pass_rate(case.snapshot, variant, findings, number_of_scenarios(variant))
         assert found is not None
         return found.label
 
-    assert rate(MODEL) == "✗ 1/3 passed"
-    assert rate("// x\n" + MODEL) == "✗ 1/3 passed"
-    assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "✗ 1/3 passed (stale)"
-    assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "✗ 1/3 passed (stale)"
+    assert rate(MODEL) == "✗ 3 of 4 executed, 1 passed"
+    assert rate("// x\n" + MODEL) == "✗ 3 of 4 executed, 1 passed"
+    assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "✗ 3 of 4 executed, 1 passed (stale)"
+    assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "✗ 3 of 4 executed, 1 passed (stale)"
     (variant,) = variants_of(case.snapshot, case.uri)
-    assert pass_rate(case.snapshot, variant, findings_of(())) is None
+    assert pass_rate(case.snapshot, variant, findings_of(()), 4) is None
 
 
 def test_the_number_of_scenarios_is_told_from_the_text() -> None:
@@ -278,8 +308,8 @@ def test_a_scenario_comes_back_from_plain_data() -> None:
 
 def test_a_clause_that_could_not_have_failed_is_marked_quietly() -> None:
     vacuous = replace(HOLDS, vacuous="a set is empty")
-    assert hints(vacuous, vacuous) == ["in-tray ✔ 2/2  worst +31 mm (vacuous)"]
-    assert hints(vacuous, HOLDS) == ["in-tray ✔ 2/2  worst +31 mm"]
+    assert hints(vacuous, vacuous, text=TWO, before=TWO) == ["in-tray ✔ 2/2  worst +31 mm (vacuous)"]
+    assert hints(vacuous, HOLDS, text=TWO, before=TWO) == ["in-tray ✔ 2/2  worst +31 mm"]
     case = fixture(MODEL)
     findings = judged(case, vacuous)
     (found,) = clause_diagnostics(case.snapshot, case.uri, findings)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from features.test_clause_results import HOLDS, IRI, NS, VIOLATED
+from features.judged_clauses import HOLDS, IRI, NS, ONE, VIOLATED
 from kit import MODEL, SCENE, Fixture, fixture
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.policy_results import policy_hints
@@ -39,7 +39,7 @@ Scenario Exec (ns=x) plain { variant: <fetching.bench-to-tray> scene inst: <cell
 CELL = "import \"lab.scene\"\nns x = 'https://example.org/x/'\nscene inst (ns=x) cell { scene: <bench_scene> }\n"
 
 
-def case(runs: str = RUNS, model: str = MODEL) -> Fixture:
+def case(runs: str = RUNS, model: str = ONE) -> Fixture:
     return fixture(f"//- run.bddx\n{runs}//- main.bdd\n{model}//- cell.scenex\n{CELL}//- lab.scene\n{SCENE}")
 
 
@@ -49,7 +49,7 @@ def judged(**outcomes: Judgement) -> Findings:
     digests, variant, results = digests_of(known.snapshot, known.uri), f"{NS}bench-to-tray", Results()
     for number, (name, judgement) in enumerate(outcomes.items(), start=1):
         iri = f"{X}{name.replace('_', '-')}"
-        found = JudgedScenario(known.uri, variant, number, f"part = {number}", digests.variants[variant], "")
+        found = JudgedScenario(known.uri, variant, 1, f"part = {number}", digests.variants[variant], "")
         found.execution, found.execution_digest, found.finished = iri, digests.executions.get(iri, ""), True
         found.judge(IRI, replace(judgement, digest=digests.clauses[IRI]))
         results.add([found])
@@ -71,6 +71,16 @@ def test_a_policy_has_the_results_of_the_executions_that_use_it() -> None:
         "seen for <fetch.in-tray> ✗ 1/2  worst −12 mm",
         "<seen> ✔ +31 mm",
         "<seen> ✗ −12 mm at 3.40 s",
+    ]
+
+
+def test_a_policy_with_some_of_its_executions_has_not_passed() -> None:
+    # Each execution has four scenarios, of which one was executed.
+    found = hints(judged(by_topic=HOLDS, again=HOLDS), case(model=MODEL))
+    assert [one.removesuffix(" (stale)") for one in found] == [
+        "seen for <fetch.in-tray> ? 2 of 8 executed  worst +31 mm",
+        "<seen> ? 1 of 4 executed  +31 mm",
+        "<seen> ? 1 of 4 executed  +31 mm",
     ]
 
 
@@ -96,8 +106,8 @@ def test_they_are_stale_when_the_policy_or_the_execution_has_changed(old: str, n
 
 
 def test_they_are_stale_when_the_clause_has_changed() -> None:
-    edited = MODEL.replace("0.5 seconds after", "0.6 seconds after")
-    assert edited != MODEL
+    edited = ONE.replace("0.5 seconds after", "0.6 seconds after")
+    assert edited != ONE
     found = hints(judged(by_topic=HOLDS), case(model=edited))
     assert found == ["seen for <fetch.in-tray> ✔ +31 mm (stale)", "<seen> ✔ +31 mm (stale)"]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from features.judged_clauses import ONE
 from gherkin_kit import edited
 from kit import MODEL, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
@@ -124,7 +125,7 @@ def test_executions_that_are_not_judged_yet_are_counted() -> None:
 
 
 def test_a_verdict_on_an_older_text_of_the_clause_is_not_shown() -> None:
-    case = fixture(MODEL)
+    case = fixture(ONE)
     digests = digests_of(case.snapshot, case.uri)
     scenario = JudgedScenario(case.uri, f"{NS}bench-to-tray", 1, "part = 1", "", "", run=1)
     scenario.judge(IRI, replace(HOLDS, digest=digests.clauses[IRI]))

@@ -202,11 +202,11 @@ async def test_a_lens_tells_how_often_an_execution_passed(editor: Editor, model:
     await run(editor, model, only=[{"variant": VARIANT, "execution": TWO, "variations": [1]}])
     show(editor, model)
     found = dict(await lenses(editor, model))
-    assert {"Rerun 2 failed", "✗ 0/2 passed"} < set(found)
+    assert {"Rerun 2 failed", "✗ 2 of 8 executed, 0 passed"} < set(found)
     text = model.read_text(encoding="utf-8").replace("repeat: 2", "repeat: 1")
     document = types.VersionedTextDocumentIdentifier(uri=path_to_uri(model), version=2)
     change = types.TextDocumentContentChangeWholeDocument(text=text)
     editor.client.text_document_did_change(
         types.DidChangeTextDocumentParams(text_document=document, content_changes=[change])
     )
-    assert "✗ 0/2 passed (stale)" in dict(await lenses(editor, model))
+    assert "✗ 2 of 8 executed, 0 passed (stale)" in dict(await lenses(editor, model))

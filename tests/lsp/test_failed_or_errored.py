@@ -7,9 +7,11 @@ from xml.etree import ElementTree
 
 import pytest
 
-from kit import MODEL, fixture
+from features.judged_clauses import ONE
+from kit import fixture
 from robbdd_tools.commands.failure_summary import failure_summary
-from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints, pass_rate
+from robbdd_tools.features.clause_results import appearance, clause_diagnostics, clause_hints
+from robbdd_tools.features.pass_rates import pass_rate
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.run_verdicts import digests_of
 from robbdd_tools.monitor.verdict import Outcome
@@ -60,7 +62,7 @@ def test_badge_lens_problems_reports_and_summaries_agree(verdicts: tuple[dict[st
         for clause, verdict in zip(CLAUSES, verdicts, strict=True)
     ]
     results = RunResults(Manifest("main.bdd", 1, (SPEC,)))
-    case = fixture(MODEL)
+    case = fixture(ONE)
     digests = digests_of(case.snapshot, case.uri)
     scenario = judged_scenario(SPEC, case.uri, digests, "", run=1, index=0, seed=None)
     for clause, message in zip(CLAUSES, messages, strict=True):
@@ -87,7 +89,7 @@ def test_badge_lens_problems_reports_and_summaries_agree(verdicts: tuple[dict[st
 
     # The scenario: the lens, the stored results, the reports and the causes at the end of a run.
     (variant,) = variants_of(case.snapshot, case.uri)
-    rate = pass_rate(case.snapshot, variant, findings)
+    rate = pass_rate(case.snapshot, variant, findings, 1)
     assert rate is not None
     assert (rate.outcome, rate.passed) == (outcome, int(outcome == "holds"))
     assert scenario.outcome == outcome

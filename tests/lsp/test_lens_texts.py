@@ -16,7 +16,7 @@ from tests.bench.models import long_story
 from edits import PIECES, Edit
 from kit import FOLDER, MODEL, SCENE, STORY
 from robbdd_tools.checks.file_caches import without_cache
-from robbdd_tools.features.clause_results import pass_rate
+from robbdd_tools.features.pass_rates import pass_rate
 from robbdd_tools.features.run_verdicts import NOTHING, Findings, JudgedScenario, Judgement, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.lsp.convert import Converter
@@ -63,7 +63,7 @@ def expected(snapshot: Snapshot, findings: Findings) -> list[tuple[str, int, Any
     """The number of scenarios and the pass rate at each variant, found without any cache."""
     found: list[tuple[str, int, Any, str]] = []
     for one in variants_of(snapshot, URI):
-        rate = pass_rate(snapshot, one, findings)
+        rate = pass_rate(snapshot, one, findings, number_of_scenarios(one))
         line = snapshot.document(URI).position(one.definition.span.start).line
         found.append((one.iri, line, number_of_scenarios(one), "" if rate is None else rate.label))
     return found

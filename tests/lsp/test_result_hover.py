@@ -82,7 +82,7 @@ async def test_a_violated_clause_shows_its_moment_and_its_margin_over_time(pictu
         assert (kind, moment[:4]) == ("image/png", b"\x89PNG")
         assert len(shown) < MOST
     assert [name for name, _, _ in PICTURE.findall(await hover(pictured, "in-hand: holds"))] == ["margin over time"]
-    assert "part-to-bin`: ✗ 0/1 passed" in await hover(pictured, "tidy-bench {")
+    assert "part-to-bin`: ✗ 1 of 4 executed, 0 passed" in await hover(pictured, "tidy-bench {")
     pictured.change(SOON[1], SOON[0])
     assert "Last results, before the text was edited:" in await hover(pictured, "at-goal: holds")
 

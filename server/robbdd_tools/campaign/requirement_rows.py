@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
 
 NO_SCENARIO, NOT_RUN, VACUOUS = "no scenario", "not run", "proves little"
+INCOMPLETE = "not run in full"
 _WORST = (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS)
-_ORDER = ("violated", NO_SCENARIO, "unknown", VACUOUS, NOT_RUN, "holds")
+_ORDER = ("violated", NO_SCENARIO, "unknown", VACUOUS, NOT_RUN, INCOMPLETE, "holds")
 """The verdicts on requirements, in the order of a report."""
 
 
@@ -34,7 +35,8 @@ class VerifyingClause:
 class VerifyingScenario:
     """A scenario variant that verifies a requirement. ``held`` of its ``total`` executions satisfy the requirement.
 
-    ``clauses`` are those that verify it, if there are executions.
+    ``clauses`` are those that verify it, if there are executions. ``left`` is the number of its scenarios without an
+    execution.
     """
 
     name: str
@@ -42,6 +44,7 @@ class VerifyingScenario:
     total: int
     verdict: str
     clauses: tuple[VerifyingClause, ...]
+    left: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +52,8 @@ class RequirementResult:
     """A requirement with its results.
 
     ``verdict`` is ``holds``, ``violated`` or ``unknown``; or ``no scenario``, ``not run`` (some scenario that verifies
-    it) or ``proves little`` (no clause that verifies it could have failed), which are no proof either.
+    it), ``not run in full`` (only some of a variant's scenarios) or ``proves little`` (no clause that verifies it could
+    have failed), which are no proof either.
     """
 
     label: str
@@ -83,7 +87,8 @@ def requirement_results(
 def requirement_summary(found: Sequence[RequirementResult]) -> str:
     """Return how many requirements are shown, and why the others are not."""
     counted = Counter(one.verdict for one in found)
-    others = [f"{counted[one]} {_WORDS[one]}" for one in _ORDER if one != "holds" and counted[one]]
+    counted[INCOMPLETE] += counted.pop(NOT_RUN, 0)
+    others = [f"{counted[one]} {_WORDS[one]}" for one in _WORDS if counted[one]]
     return f"{counted['holds']} of {len(found)} requirements shown{''.join(f', {one}' for one in others)}"
 
 
@@ -92,7 +97,7 @@ _WORDS = {
     "unknown": "unknown",
     NO_SCENARIO: "without scenario",
     VACUOUS: "with clauses only that could not have failed",
-    NOT_RUN: "not run in full",
+    INCOMPLETE: INCOMPLETE,
 }
 
 
@@ -111,6 +116,8 @@ def _verdict(scenarios: Sequence[VerifyingScenario]) -> str:
         return failed
     if not all(one.total for one in scenarios):
         return NOT_RUN
+    if any(one.left for one in scenarios):
+        return INCOMPLETE
     judged = [clause for one in scenarios for clause in one.clauses if clause.total]
     return VACUOUS if judged and all(clause.vacuous for clause in judged) else "holds"
 
@@ -119,7 +126,11 @@ def _scenario(variant: VerifyingVariant, results: Sequence[ExecutionResult]) -> 
     outcomes = [_outcome(variant, result) for result in results]
     clauses = tuple(_clauses(variant, results)) if results else ()
     verdict = str(_worst(outcomes)) if outcomes else NOT_RUN
-    return VerifyingScenario(variant.name, outcomes.count(Outcome.HOLDS), len(outcomes), verdict, clauses)
+    executed = len({one.variation for one in results})
+    left = max(0, (variant.scenarios or executed) - executed)
+    if left and verdict == Outcome.HOLDS:
+        verdict = INCOMPLETE
+    return VerifyingScenario(variant.name, outcomes.count(Outcome.HOLDS), len(outcomes), verdict, clauses, left)
 
 
 def _outcome(variant: VerifyingVariant, result: ExecutionResult) -> Outcome:

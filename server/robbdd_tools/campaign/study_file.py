@@ -18,7 +18,7 @@ from robbdd_tools.campaign.designs import design_points
 from robbdd_tools.campaign.rates import StatisticsNotInstalled
 from robbdd_tools.campaign.stopping import RatioTest, StopRule, UntilWidth
 from robbdd_tools.campaign.study_ranges import form_faults, range_faults
-from robbdd_tools.graph.verified_requirements import merged_links
+from robbdd_tools.graph.verified_requirements import counted_links, merged_links
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.run_policy import TIMEOUT
 from robbdd_tools.syntax.study_content import STUDY, Factor, StudyText, Word
@@ -100,7 +100,9 @@ class Study:
     @property
     def requirements(self) -> tuple[LinkedRequirement, ...]:
         """The requirements of the models. All cells have the same models."""
-        return merged_links(file.requirements for file in self.cells[0].plan.files)
+        links = merged_links(file.requirements for file in self.cells[0].plan.files)
+        # The values of a range replace those of the model, and so change the number of scenarios.
+        return counted_links(links, {}) if self.content.ranges else links
 
     @cached_property
     def scene_files(self) -> tuple[ModelFile, ...]:

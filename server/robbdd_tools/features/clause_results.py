@@ -7,20 +7,27 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.features.pass_rates import (
+    STALE,
+    ExpectedExecutions,
+    Missing,
+    PassRate,
+    extent,
+    missing_executions,
+    outcome_of_all,
+)
 from robbdd_tools.features.rejudged_results import BADNESS, MARK, SIGNS, RejudgedResult, rejudged_result
-from robbdd_tools.features.run_verdicts import digest, execution_digest, variant_digest
+from robbdd_tools.features.run_verdicts import digest
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.features.executions import PlacedExecution
     from robbdd_tools.features.run_verdicts import Findings, Judged, JudgedScenario
     from robbdd_tools.names.clause_places import PlacedClause
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.variant_places import PlacedVariant
 
-STALE, VACUOUS = "(stale)", "(vacuous)"
+VACUOUS = "(vacuous)"
 _REJUDGED = "Re-judged on stored traces, not executed: run it to be sure."
 _CHANGED = "The text has changed since this was judged: run it again."
 MAX_LINES = 20
@@ -80,21 +87,6 @@ class ResultHint:
         return "\n".join((*remarks, *_shortened(self.lines, MAX_LINES)))
 
 
-@dataclass(frozen=True, slots=True)
-class PassRate:
-    """The numbers of a variant's scenarios that passed and that were run. ``outcome`` is the worst outcome."""
-
-    passed: int
-    run: int
-    outcome: str
-    stale: bool
-
-    @property
-    def label(self) -> str:
-        """The pass rate as text."""
-        return f"{SIGNS[self.outcome]} {self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
-
-
 def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
     """Return the data that clients need to colour a result."""
     found: dict[str, Any] = {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
@@ -113,6 +105,7 @@ def verdict_of(outcome: str) -> str:
 def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
     """Return a hint for each clause of a file with results."""
     hints: list[ResultHint] = []
+    expected = ExpectedExecutions(snapshot, uri)
     for clause in clauses_in(snapshot, uri) if findings.variants else ():
         judged, edited = findings.clauses.get(clause.iri, ()), findings.rejudged.get(clause.iri, ())
         now = digest(snapshot, uri, clause.span) if judged or edited else ""
@@ -121,7 +114,9 @@ def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[Resul
         if rejudged:
             hints.append(_rejudged_hint(clause, rejudged_result(rejudged, judged, now)))
         elif judged:
-            hints.append(clause_hint(clause, fresh or judged, stale=not fresh))
+            shown = fresh or judged
+            total = expected.of((scenario for scenario, _ in shown), findings)
+            hints.append(clause_hint(clause, shown, total, stale=not fresh))
     return hints
 
 
@@ -137,35 +132,6 @@ def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHi
             if shown:
                 hints.append(_row_hint(row, shown, stale=not fresh))
     return hints
-
-
-def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
-    """Return the pass rate of a variant in its last runs, or ``None`` if it was never run."""
-    known = findings.variants.get(variant.iri)
-    if known is None:
-        return None
-    now = variant_digest(snapshot, variant)
-    return _rate((one, one.digest == now) for one in known)
-
-
-def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Findings) -> PassRate | None:
-    """Return the pass rate of an execution's variant in its last runs by this execution.
-
-    Returns ``None`` if there are no such runs.
-    """
-    now = execution_digest(snapshot, execution)
-    own = (one for one in findings.variants.get(execution.variant.iri, ()) if one.execution == execution.iri)
-    return _rate((one, one.execution_digest == now) for one in own)
-
-
-def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
-    """Return the pass rate of scenarios. Each one has a flag that is true if its run judged the current text."""
-    finished = [(one.outcome, current) for one, current in scenarios if one.finished]
-    if not finished:
-        return None
-    outcomes = [outcome for outcome, _ in finished]
-    stale = not all(current for _, current in finished)
-    return PassRate(outcomes.count("holds"), len(outcomes), _worst(outcomes), stale)
 
 
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
@@ -261,13 +227,18 @@ def _line(judged: Judged) -> str:
     return f"{scenario.values}: {judgement.said}"
 
 
-def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
-    """Return the hint of a clause with some verdicts."""
+def clause_hint(clause: PlacedClause, judged: Sequence[Judged], total: int | None, *, stale: bool) -> ResultHint:
+    """Return the hint of a clause with some verdicts, of the ``total`` that it should have."""
     ranked = sorted(judged, key=lambda entry: entry[1].rank)
     worst = ranked[0][1]
     failing = tuple(entry for entry in ranked if entry[1].outcome != "holds")
-    sign = SIGNS[worst.outcome]
-    if len(judged) == 1:
+    missing: Missing = None if total is None else max(0, total - len(judged))
+    outcome = outcome_of_all(worst.outcome, missing)
+    sign = SIGNS[outcome]
+    if outcome != worst.outcome:
+        margin = f"worst {worst.margin}" if len(judged) > 1 and worst.margin else worst.margin
+        label = f"{sign} {extent(len(judged), missing)}" + (f"  {margin}" if margin else "")
+    elif len(judged) == 1:
         label = worst.said.partition(":")[0]
     else:
         holding = sum(judgement.outcome == "holds" for _, judgement in judged)
@@ -286,7 +257,7 @@ def clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) 
         clause.span,
         clause.head,
         shown,
-        worst.outcome,
+        outcome,
         lines,
         stale,
         failing,
@@ -304,14 +275,17 @@ def _rejudged_hint(clause: PlacedClause, found: RejudgedResult) -> ResultHint:
 
 
 def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:
-    outcome = _worst(scenario.outcome for scenario in scenarios)
+    worst = _worst(scenario.outcome for scenario in scenarios)
+    missing = missing_executions(scenarios, len({scenario.variation for scenario in scenarios}))
+    outcome = outcome_of_all(worst, missing)
     failed = dict.fromkeys(
         judgement.name
         for scenario in scenarios
         for judgement in scenario.clauses.values()
         if judgement.outcome != "holds"
     )
-    label = " ".join((SIGNS[outcome], ", ".join(failed))).strip()
+    partial = [extent(sum(scenario.finished for scenario in scenarios), missing)] * (outcome != worst)
+    label = " ".join((SIGNS[outcome], *partial, ", ".join(failed))).strip()
     lines = tuple(
         f"{scenario.values}: {judgement.name} {judgement.said}"
         for scenario in scenarios

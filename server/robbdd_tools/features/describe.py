@@ -12,17 +12,19 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.features.clause_results import clause_hints, execution_rate
+from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe_predicate import describe_predicate
 from robbdd_tools.features.element_properties import describe_properties
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.imported_statements import describe_graph, describe_statements
 from robbdd_tools.features.markdown import code, code_block, literal
+from robbdd_tools.features.pass_rates import execution_rate
 from robbdd_tools.features.policy_results import policy_hints
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.requirement_results import requirement_words
 from robbdd_tools.features.result_words import MAX_LISTED, rate_lines, rate_words, result_words
 from robbdd_tools.features.run_verdicts import NOTHING
+from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.sentences import (
     clause_sentence,
     condition_meaning,
@@ -285,7 +287,9 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
                     yield result_words(hint)
         case SymbolKind.EXECUTION:
             for one in executions_of(snapshot, definition.uri):
-                rate = execution_rate(snapshot, one, findings) if one.iri == definition.iri else None
+                if one.iri != definition.iri:
+                    continue
+                rate = execution_rate(snapshot, one, findings, number_of_scenarios(one.variant))
                 if rate is not None:
                     known = findings.variants.get(one.variant.iri, ())
                     own = [scenario for scenario in known if scenario.execution == one.iri]

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import clause_hint
 from robbdd_tools.features.executions import executions_of
+from robbdd_tools.features.pass_rates import expected_executions
 from robbdd_tools.features.run_verdicts import digest, execution_digest
+from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.names.clause_places import PlacedClause, clauses_in
 from robbdd_tools.names.elements import Site
 from robbdd_tools.syntax import tree
@@ -93,7 +95,17 @@ def _hint(
     text = _clause_digest(snapshot, clause)
     fresh = [entry for entry in judged if _is_fresh(entry, now, text)]
     placed = PlacedClause(clause.iri, clause.symbol.name, span, head)
-    yield clause_hint(placed, fresh or judged, stale=not fresh)
+    shown = fresh or judged
+    running = {scenario.execution for scenario, _ in shown}
+    totals = [_expected(one, findings) for one in executions if one.iri in running]
+    total = sum(one for one in totals if one is not None) if None not in totals else None
+    yield clause_hint(placed, shown, total, stale=not fresh)
+
+
+def _expected(execution: PlacedExecution, findings: Findings) -> int | None:
+    known = findings.variants.get(execution.variant.iri, ())
+    own = (scenario for scenario in known if scenario.execution == execution.iri)
+    return expected_executions(own, number_of_scenarios(execution.variant))
 
 
 def _is_fresh(judged: Judged, now: dict[str, str], clause: str) -> bool:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.features.markdown import code, literal
+from robbdd_tools.features.pass_rates import Missing, counted, missing_executions, outcome_of_all
 from robbdd_tools.features.rejudged_results import BADNESS, SIGNS
 from robbdd_tools.features.run_verdicts import digest, variant_digest
+from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.names.elements import site_of
 from robbdd_tools.names.requirement_links import Verifier, key_of, requirements_of, verifiers
 from robbdd_tools.syntax import tree
@@ -29,25 +31,33 @@ class Evidence:
 
     - ``held``: the number of executions in which all its clauses held.
     - ``run``: the number of all executions.
-    - ``outcome``: the worst outcome; ``""`` if the variant was never run.
+    - ``worst``: the worst outcome; ``""`` if the variant was never run.
     - ``vacuous``: true if none of its clauses could have failed.
     - ``stale``: true if the text of the variant, its template or a clause has changed since then.
+    - ``missing``: the number of executions that were not made.
     """
 
     verifier: Verifier
     held: int
     run: int
-    outcome: str
+    worst: str
     vacuous: bool
     stale: bool
+    missing: Missing = 0
+
+    @property
+    def outcome(self) -> str:
+        """The outcome of all executions that there should be; ``""`` if the variant was never run."""
+        return outcome_of_all(self.worst, self.missing)
 
     @property
     def words(self) -> str:
         """The last verdict in words."""
-        if not self.outcome:
+        if not self.worst:
             return "not run"
         remarks = [" (vacuous)"] * self.vacuous + [" (stale)"] * self.stale
-        return f"{SIGNS[self.outcome]} {self.held}/{self.run}{''.join(remarks)}"
+        counts = counted(self.held, self.run, self.missing, "held")
+        return f"{SIGNS[self.outcome]} {counts}{''.join(remarks)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +69,14 @@ class Coverage:
 
     @property
     def outcome(self) -> str:
-        """The worst outcome of all executions; ``""`` if no scenario was run."""
-        return min((one.outcome for one in self.evidence if one.outcome), key=BADNESS.index, default="")
+        """The worst outcome of all executions that there should be; ``""`` if no scenario was run."""
+        worst = min((one.outcome for one in self.evidence if one.worst), key=BADNESS.index, default="")
+        return "unknown" if worst == "holds" and not all(one.worst for one in self.evidence) else worst
 
     @property
     def is_vacuous(self) -> bool:
         """Whether there are executions, and none of their clauses could have failed."""
-        known = [one for one in self.evidence if one.outcome]
+        known = [one for one in self.evidence if one.worst]
         return bool(known) and all(one.vacuous for one in known)
 
     @property
@@ -73,14 +84,16 @@ class Coverage:
         """The coverage as one line of text."""
         count = len(self.evidence)
         scenarios = f"verified by {count} scenario{'' if count == 1 else 's'}" if count else "no scenario verifies it"
-        known = [one for one in self.evidence if one.outcome]
+        known = [one for one in self.evidence if one.worst]
         if not known:
             return f"{scenarios}, not run" if count else scenarios
         held, run = sum(one.held for one in known), sum(one.run for one in known)
         remarks = [" (vacuous)"] * self.is_vacuous + [" (stale)"] * any(one.stale for one in known)
-        missing = count - len(known)
-        return f"{scenarios} · {SIGNS[self.outcome]} {held}/{run} held{''.join(remarks)}" + (
-            f" · {missing} not run" if missing else ""
+        gaps = [one.missing for one in known]
+        missing = None if None in gaps else sum(one or 0 for one in gaps)
+        counts, unrun = counted(held, run, missing, "held"), count - len(known)
+        return f"{scenarios} · {SIGNS[self.outcome]} {counts}{''.join(remarks)}" + (
+            f" · {unrun} not run" if unrun else ""
         )
 
 
@@ -109,7 +122,9 @@ def _evidence(snapshot: Snapshot, verifier: Verifier, findings: Findings) -> Evi
     now = variant_digest(snapshot, verifier.variant)
     worst = min(outcomes, key=BADNESS.index)
     stale = any(one.digest != now for one in known) and (verifier.whole or _changed(snapshot, verifier, known))
-    return Evidence(verifier, outcomes.count("holds"), len(known), worst, vacuous, stale)
+    every, count = findings.variants[verifier.variant.iri], number_of_scenarios(verifier.variant)
+    missing = missing_executions(every, count)
+    return Evidence(verifier, outcomes.count("holds"), len(known), worst, vacuous, stale, missing)
 
 
 def _changed(snapshot: Snapshot, verifier: Verifier, known: Sequence[JudgedScenario]) -> bool:
@@ -134,9 +149,9 @@ def requirement_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) ->
     """Report each requirement of a file that the latest runs did not show to be satisfied."""
     for one in coverage_of_file(snapshot, uri, findings) if findings.variants else ():
         name, place = one.requirement.symbol.path, one.requirement.span
-        failing = [entry for entry in one.evidence if entry.outcome and entry.outcome != "holds" and not entry.stale]
+        failing = [entry for entry in one.evidence if entry.worst not in ("", "holds") and not entry.stale]
         if failing:
-            worst = min((entry.outcome for entry in failing), key=BADNESS.index)
+            worst = min((entry.worst for entry in failing), key=BADNESS.index)
             severity = Severity.ERROR if worst == "violated" else Severity.WARNING
             verb = "violated" if worst == "violated" else "left open"
             listed = ", ".join(f"{_name(entry)} {entry.words}" for entry in failing[:MAX_RELATED])

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from robbdd_tools.features.clause_results import pass_rate, substitutions
+from robbdd_tools.features.clause_results import substitutions
 from robbdd_tools.features.markdown import code, literal
+from robbdd_tools.features.pass_rates import pass_rate
 from robbdd_tools.features.rejudged_results import MARK
+from robbdd_tools.features.scenarios import number_of_scenarios
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.clause_results import PassRate, ResultHint
+    from robbdd_tools.features.clause_results import ResultHint
+    from robbdd_tools.features.pass_rates import PassRate
     from robbdd_tools.features.run_verdicts import Findings, JudgedScenario
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variant_places import PlacedVariant
@@ -32,7 +35,7 @@ def result_words(hint: ResultHint) -> str:
 
 def rate_words(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
     """Yield lines about a variant: its pass rate, and the scenarios that did not pass."""
-    rate = pass_rate(snapshot, variant, findings)
+    rate = pass_rate(snapshot, variant, findings, number_of_scenarios(variant))
     if rate is not None:
         yield from rate_lines(variant.definition.symbol.name, rate, findings.variants[variant.iri])
 

@@ -72,6 +72,7 @@ class JudgedScenario:
     - ``execution_digest``: the digest of the text of that execution; empty without one.
     - ``faults``: the errors in users' code.
     - ``repetition``: the number of this execution of the scenario in the run (from 1).
+    - ``repetitions``: how often the run was to execute the scenario.
     - ``seed``: the seed that the user gave for the run, or ``None``.
     - ``substitution``: the catalog behaviour that was executed instead of the model's.
     - ``scene_instance``: the scene instance that the user chose.
@@ -93,6 +94,7 @@ class JudgedScenario:
     execution_digest: str = ""
     faults: tuple[Fault, ...] = ()
     repetition: int = 1
+    repetitions: int = 1
     seed: int | None = None
     substitution: Substitution | None = None
     scene_instance: ChosenScene | None = None

@@ -18,13 +18,15 @@ class VerifyingVariant:
     """A scenario variant that verifies a requirement.
 
     ``clauses`` maps the IRIs of the clauses that verify it to their names. If ``whole`` is true, they are all ``Then``
-    clauses, because the variant itself, its story or its template names the requirement.
+    clauses, because the variant itself, its story or its template names the requirement. ``scenarios`` is the number of
+    its scenarios, if known.
     """
 
     iri: str
     name: str
     clauses: Mapping[str, str]
     whole: bool
+    scenarios: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +49,16 @@ def requirement_links(model: AcceptanceModel) -> tuple[LinkedRequirement, ...]:
             for requirement, found in _verified(model, story, variant):
                 variants.setdefault(requirement, []).append(found)
     return tuple(_linked(model, one, variants.get(one.iri, ())) for one in model.requirements)
+
+
+def counted_links(
+    links: Iterable[LinkedRequirement], counts: Mapping[str, int | None]
+) -> tuple[LinkedRequirement, ...]:
+    """Return requirements with the numbers of scenarios of their variants, by IRI."""
+    return tuple(
+        replace(one, variants=tuple(replace(variant, scenarios=counts.get(variant.iri)) for variant in one.variants))
+        for one in links
+    )
 
 
 def merged_links(several: Iterable[tuple[LinkedRequirement, ...]]) -> tuple[LinkedRequirement, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lsprotocol import types
 
 from robbdd_tools.base.checkpoint import checkpoint
-from robbdd_tools.features.clause_results import PassRate, appearance, execution_rate, pass_rate
+from robbdd_tools.features.clause_results import appearance
 from robbdd_tools.features.executions import executions_of
+from robbdd_tools.features.pass_rates import PassRate, execution_rate, pass_rate
 from robbdd_tools.features.scenarios import number_of_scenarios, scenario_numbers
 from robbdd_tools.features.studies import is_study
 from robbdd_tools.lsp.commands import GHERKIN, RECORD, RERUN, RUN
@@ -94,7 +95,8 @@ class LensWriter:
             checkpoint()
             own = iris.of(placed)
             was_run = any(iri in findings.variants for iri in own) if findings.variants else False
-            rates = _rates(snapshot, uri, placed, findings) if was_run else {}
+            counts = dict(zip(own, numbers, strict=True))
+            rates = _rates(snapshot, uri, placed, findings, counts) if was_run else {}
             states = tuple(
                 [_State(iri, number, rates.get(iri), iri in recorded) for iri, number in zip(own, numbers, strict=True)]
             )
@@ -186,10 +188,17 @@ def source_actions(snapshot: Snapshot, uri: str, span: Span, findings: Findings)
         yield types.CodeAction(title=command.title, kind=types.CodeActionKind.Source, command=command)
 
 
-def _rates(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, findings: Findings) -> dict[str | None, PassRate]:
-    """Return the pass rates of the variants of a story that were run, by their IRIs."""
+def _rates(
+    snapshot: Snapshot,
+    uri: str,
+    placed: PlacedDeclaration,
+    findings: Findings,
+    counts: Mapping[str | None, int | None],
+) -> dict[str | None, PassRate]:
+    """Return the pass rates of the variants of a story that were run, by their IRIs. ``counts`` are their scenarios."""
     around = variants_of(snapshot, uri, placed.span)
-    found = ((one.iri, pass_rate(snapshot, one, findings)) for one in around if one.site.placed is placed)
+    inside = (one for one in around if one.site.placed is placed)
+    found = ((one.iri, pass_rate(snapshot, one, findings, counts.get(one.iri))) for one in inside)
     return {iri: rate for iri, rate in found if rate is not None}
 
 
@@ -200,8 +209,9 @@ def _of_variant(uri: str, iri: str, number: int | None, rate: PassRate | None) -
 def _of_execution(snapshot: Snapshot, one: PlacedExecution, findings: Findings) -> _Runnable:
     choice = {"only": [{"variant": one.variant.iri, "execution": one.iri}]}
     debugged = {"scenario": one.iri, "variant": one.variant.iri}
-    rate = execution_rate(snapshot, one, findings)
-    return _Runnable(one.definition.uri, choice, debugged, number_of_scenarios(one.variant), rate)
+    number = number_of_scenarios(one.variant)
+    rate = execution_rate(snapshot, one, findings, number)
+    return _Runnable(one.definition.uri, choice, debugged, number, rate)
 
 
 def _commands(one: _Runnable, *, recorded: bool, debugs: bool) -> Iterator[types.Command]:

@@ -23,7 +23,13 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.run.consequences import Causes, Consequence
 from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement, project_of, with_cause
+from robbdd_tools.workbench.judged_scenarios import (
+    Repetitions,
+    judged_scenario,
+    judgement,
+    project_of,
+    with_cause,
+)
 
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import JudgedScenario
@@ -45,6 +51,7 @@ class RunFollower:
         self._project = project_of(text.uri)
         self._progress = RunProgress(ls, active.progress)
         self._results = RunResults(run.manifest)
+        self._repetitions = Repetitions(run.manifest.scenarios)
         self._loop = asyncio.get_running_loop()
         self._shared_fault = ""
         self._causes: dict[int, Causes] = {}
@@ -139,7 +146,14 @@ class RunFollower:
             return known
         spec, text = self._results.scenarios[index].spec, self._text
         scenario = judged_scenario(
-            spec, text.uri, text.digests, self._project, run=self._run.number, index=index, seed=text.seed
+            spec,
+            text.uri,
+            text.digests,
+            self._project,
+            run=self._run.number,
+            index=index,
+            seed=text.seed,
+            repetitions=self._repetitions.of(spec),
         )
         self._active.judged[index] = scenario
         # A scenario keeps its older results until it is executed again; repetitions that held are not executed again.

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
+from robbdd_tools.features.pass_rates import outcome_of_all
 from robbdd_tools.features.rejudged_results import SIGNS
 
 if TYPE_CHECKING:
@@ -82,7 +83,8 @@ def _cell(found: ScenarioCell | None, *, links_only: bool) -> str:
         return '<td class="cell holds">✔</td>'
     if not found.outcome:
         return '<td class="cell open">not run</td>'
-    is_proof = found.outcome == "holds" and not found.stale and not found.vacuous
+    is_proof = found.outcome == "holds" and not found.remarks
     kind = "holds" if is_proof else "violated" if found.outcome == "violated" else "open"
+    outcome = outcome_of_all(found.outcome, found.missing)
     remarks = "".join(f"<br><small>{word}</small>" for word in found.remarks)
-    return f'<td class="cell {kind}">{SIGNS.get(found.outcome, "?")} {found.held}/{found.executions}{remarks}</td>'
+    return f'<td class="cell {kind}">{SIGNS.get(outcome, "?")} {found.held}/{found.executions}{remarks}</td>'

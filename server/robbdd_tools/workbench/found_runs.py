@@ -12,7 +12,13 @@ from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.database import DatabaseProblem
 from robbdd_tools.run.readable import clause_title, readable
 from robbdd_tools.run.stored_results import RUNNING, starts
-from robbdd_tools.workbench.judged_scenarios import judged_scenario, judgement, project_of, with_cause
+from robbdd_tools.workbench.judged_scenarios import (
+    Repetitions,
+    judged_scenario,
+    judgement,
+    project_of,
+    with_cause,
+)
 from robbdd_tools.workbench.judged_text import read_texts
 
 if TYPE_CHECKING:
@@ -102,11 +108,19 @@ def _found(run: StoredRun) -> FoundRun:
         return FoundRun((), texts.some_repetitions)
     vacuous = results.vacuous()
     projects = {text.uri: project_of(text.uri) for text in named.values()}
+    repetitions = Repetitions(result.spec for result in results.scenarios)
     for index, result in enumerate(results.scenarios):
         if result.finished is not None:
             text = named[result.spec.model]
             scenario = judged_scenario(
-                result.spec, text.uri, text.digests, projects[text.uri], run=run.number, index=index, seed=seed
+                result.spec,
+                text.uri,
+                text.digests,
+                projects[text.uri],
+                run=run.number,
+                index=index,
+                seed=seed,
+                repetitions=repetitions.of(result.spec),
             )
             causes = Causes()
             for position, clause in enumerate(result.spec.clauses):

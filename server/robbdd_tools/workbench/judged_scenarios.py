@@ -15,6 +15,8 @@ from robbdd_tools.run.report import failure_words, margin, values_words, verdict
 from robbdd_tools.run.store import project_root
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from robbdd_tools.features.run_verdicts import Digests
     from robbdd_tools.protocol.messages import ClauseJudged
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
@@ -24,11 +26,20 @@ _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
 
 def judged_scenario(
-    spec: ScenarioSpec, uri: str, digests: Digests, project: str, *, run: int, index: int, seed: int | None
+    spec: ScenarioSpec,
+    uri: str,
+    digests: Digests,
+    project: str,
+    *,
+    run: int,
+    index: int,
+    seed: int | None,
+    repetitions: int = 1,
 ) -> JudgedScenario:
     """Return scenario number ``index`` (from 0) of a run, without verdicts.
 
-    ``project`` is the root folder of the model's project (``project_of``); ``seed`` is the seed that the user gave.
+    ``project`` is the root folder of the model's project (``project_of``); ``seed`` is the seed that the user gave;
+    ``repetitions`` is how often the run was to execute the scenario.
     """
     execution = "" if spec.execution is None else spec.execution.iri
     return JudgedScenario(
@@ -43,12 +54,30 @@ def judged_scenario(
         execution=execution,
         execution_digest=digests.executions.get(execution, ""),
         repetition=spec.repetition,
+        repetitions=repetitions,
         seed=seed,
         substitution=spec.substitution,
         scene_instance=spec.chosen_scene,
         world=NO_PHYSICS if spec.world else None,
         project=project,
     )
+
+
+class Repetitions:
+    """How often a run was to execute each of its scenarios."""
+
+    def __init__(self, scenarios: Iterable[ScenarioSpec]) -> None:
+        self._most: dict[tuple[str, int, str], int] = {}
+        for one in scenarios:
+            self._most[_key(one)] = max(one.repetition, self._most.get(_key(one), 1))
+
+    def of(self, spec: ScenarioSpec) -> int:
+        """Return how often the run was to execute a scenario."""
+        return self._most[_key(spec)]
+
+
+def _key(spec: ScenarioSpec) -> tuple[str, int, str]:
+    return spec.variant, spec.variation, "" if spec.execution is None else spec.execution.iri
 
 
 def project_of(uri: str) -> str:

@@ -74,9 +74,12 @@ class ModelFile:
     @cached_property
     def requirements(self) -> tuple[LinkedRequirement, ...]:
         """The requirements of the model with the scenarios and clauses that verify them; raises ``ModelErrors``."""
-        from robbdd_tools.graph.verified_requirements import requirement_links
+        from robbdd_tools.gherkin.variations import count
+        from robbdd_tools.graph.verified_requirements import counted_links, requirement_links
 
-        return requirement_links(self.acceptance)
+        links = requirement_links(self.acceptance)
+        variants = (variant for story in self.acceptance.stories if links for variant in story.variants)
+        return counted_links(links, {one.iri: count(one.variation) for one in variants})
 
     def place(self, iri: str) -> Place | None:
         """Return the place where an element is declared, or ``None`` if this model does not declare it.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.graph_formats import graph_format
+from robbdd_tools.features.pass_rates import missing_executions
 from robbdd_tools.features.rejudged_results import BADNESS
 from robbdd_tools.graph.requirement import Requirement
 from robbdd_tools.workbench.requirement_table import Names, RequirementRow, ScenarioCell, TableProblem, verdict_of
@@ -68,7 +69,8 @@ def graph_rows(
         return store.find(str(run)).record().digest != file.digest
 
     def cell(variant: VerifyingVariant) -> ScenarioCell:
-        known = [one for one in variants.get(variant.iri, ()) if one.finished]
+        every = variants.get(variant.iri, ())
+        known = [one for one in every if one.finished]
         outcomes = [_outcome(one, variant) for one in known]
         judged = [one.clauses[iri] for one in known for iri in variant.clauses if iri in one.clauses]
         return ScenarioCell(
@@ -78,6 +80,7 @@ def graph_rows(
             len(known),
             bool(judged) and all(one.vacuous for one in judged),
             any(is_stale(one.run) for one in known),
+            missing_executions(every, variant.scenarios) if known else 0,
         )
 
     def rows() -> Iterator[RequirementRow]:

@@ -11,6 +11,7 @@ from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.features.pass_rates import Missing, extent
 from robbdd_tools.features.project_findings import findings_of
 from robbdd_tools.features.rejudged_results import BADNESS
 from robbdd_tools.features.requirement_results import Coverage, coverage
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 COLUMNS = ("name", "id", "text", "source", "scenarios", "held", "executions", "verdict")
 """The columns of an exported table. An import reads the first four."""
 NO_SCENARIO, NOT_RUN, STALE, VACUOUS = "no scenario", "not run", "stale", "vacuous"
+INCOMPLETE = "not run in full"
 _NAME = re.compile(r"[^\W\d][\w\-]*")
 _OTHER = re.compile(r"[^\w\-]+")
 
@@ -39,7 +41,11 @@ class TableProblem(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ScenarioCell:
-    """The latest result of a scenario for a requirement. ``outcome`` is empty if the scenario was never run."""
+    """The latest result of a scenario for a requirement.
+
+    ``outcome`` is the worst outcome of its executions; empty if the scenario was never run. ``missing`` executions were
+    not made.
+    """
 
     scenario: str
     outcome: str
@@ -47,11 +53,13 @@ class ScenarioCell:
     executions: int
     vacuous: bool
     stale: bool
+    missing: Missing = 0
 
     @property
     def remarks(self) -> list[str]:
         """The reasons why the result is no proof."""
-        return [VACUOUS] * self.vacuous + [STALE] * self.stale
+        partial = [extent(self.executions, self.missing)] * (self.missing != 0)
+        return partial + [VACUOUS] * self.vacuous + [STALE] * self.stale
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +67,8 @@ class RequirementRow:
     """A requirement with its coverage.
 
     ``verdict`` is ``holds``, ``violated``, ``unknown`` or ``undefined``; or ``no scenario``, ``not run`` (some scenario
-    that verifies it), ``stale`` (the text has changed since) or ``vacuous``, which are no proof either. ``iri`` is
-    empty if no model declares the requirement yet.
+    that verifies it), ``not run in full`` (not all of its executions), ``stale`` (the text has changed since) or
+    ``vacuous``, which are no proof either. ``iri`` is empty if no model declares the requirement yet.
     """
 
     name: str
@@ -123,7 +131,13 @@ def _row(snapshot: Snapshot, found: Coverage) -> RequirementRow:
     identifier, text, source = ("" if one is None else one.value for one in texts)
     evidence = tuple(
         ScenarioCell(
-            one.verifier.variant.definition.symbol.path, one.outcome, one.held, one.run, one.vacuous, one.stale
+            one.verifier.variant.definition.symbol.path,
+            one.worst,
+            one.held,
+            one.run,
+            one.vacuous,
+            one.stale,
+            one.missing,
         )
         for one in found.evidence
     )
@@ -140,6 +154,8 @@ def verdict_of(evidence: Sequence[ScenarioCell]) -> str:
         return worst
     if not all(one.outcome for one in evidence):
         return NOT_RUN
+    if any(one.missing != 0 for one in evidence):
+        return INCOMPLETE
     if any(one.stale for one in evidence):
         return STALE
     return VACUOUS if all(one.vacuous for one in evidence) else worst
