@@ -235,7 +235,7 @@ async def _ask_all(client: LanguageClient, path: Path, asked: list[str]) -> None
             for method in ("hover", "definition", "completion"):
                 await ask(method, position=position)
             await ask("references", position=position, context={"includeDeclaration": True})
-    for method in ("graph", "preview", "tests", "runs", "importResults"):
+    for method in ("graph", "preview", "tests", "runs", "importResults", "study"):
         await send(f"robbdd/{method}", {"uri": uri})
         assert asked == [], method
     for command in ("run", "record", "gherkin", "steps"):

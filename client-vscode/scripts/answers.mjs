@@ -23,6 +23,7 @@ const ANSWERS = {
   runmessage: "RunNotification",
   runs: "StoredRuns",
   scene: "ScenePicture",
+  study: "StudyResults",
   templates: "Templates",
   testresults: "FoundResults",
   tests: "Listing",

@@ -11,7 +11,7 @@ import type { SceneView } from "./panels/scene/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { debugScenario } from "./debugChoice";
-import { RUNNABLE, SCENES, STUDIES, modelFor, openModel } from "./models";
+import { RUNNABLE, SCENES, STUDIED, STUDIES, modelFor, openModel } from "./models";
 import { inform } from "./notices";
 import { newProject } from "./projects";
 import type { RunOptionsChooser } from "./runs/chooser";
@@ -72,8 +72,8 @@ export function registerCommands(
     "robbdd.runStudy": (target) => withStudy(server, target, "run"),
     "robbdd.resumeStudy": (target) => withStudy(server, target, "resume"),
     "robbdd.showStudyResults": (target) => withStudy(server, target, "show"),
-    "robbdd.showStudy": (target) => withModel(target, (uri) => studies.choose(uri, "factors")),
-    "robbdd.showMatrix": (target) => withModel(target, (uri) => studies.choose(uri, "matrix")),
+    "robbdd.showStudy": (target) => withModel(modelOf(target), (uri) => studies.choose(uri, "factors"), STUDIED),
+    "robbdd.showMatrix": (target) => withModel(modelOf(target), (uri) => studies.choose(uri, "matrix"), STUDIED),
     "robbdd.showHistory": (target) => histories.open(target),
     "robbdd.compareRuns": (target) => withModel(target, (uri) => comparisons.choose(uri), RUNNABLE),
     "robbdd.replayTest": (target) => replayTest(replays, tests, target),

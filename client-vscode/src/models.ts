@@ -11,6 +11,8 @@ const MOST = 200;
 export const RUNNABLE = ["robbdd", "robbdd-bddx"];
 /** Languages of studies. */
 export const STUDIES = ["robbdd-study"];
+/** Languages of files whose executions can be shown over their variables. */
+export const STUDIED = ["robbdd", ...STUDIES];
 /** Languages of files with executable scenes. */
 export const SCENES = ["robbdd-scenex"];
 

@@ -367,7 +367,20 @@ export class Task {
   ) {}
 }
 
-export const tasks = { executeTask: (task: Task) => Promise.resolve(void editor.tasks.push(task)) };
+const ends = new EventEmitter();
+
+export const tasks = {
+  executeTask: (task: Task) => {
+    editor.tasks.push(task);
+    return Promise.resolve(task);
+  },
+  onDidEndTaskProcess: ends.event,
+};
+
+/** End the process of a task. */
+export function endTask(task: Task, exitCode: number): void {
+  ends.fire({ execution: task, exitCode });
+}
 
 export const commands = {
   executeCommand: nothing,

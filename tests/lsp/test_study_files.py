@@ -100,7 +100,7 @@ def test_the_lenses_fit_what_was_executed(tmp_path: Path, able: bool) -> None:
         folder = study_folder(study)
         folder.mkdir(parents=True)
         (folder / NAME).write_bytes(b"")
-        assert titles() == (["Resume study", "Show results"] if able else [])
+        assert titles() == (["Resume study", "Show results", "Show executions"] if able else [])
         project.open(uri, 2, "Study")
         assert titles() == []
         assert study_lenses(server, project.snapshot(), f"{FOLDER}other.study") == []

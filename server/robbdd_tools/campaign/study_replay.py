@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.campaign.replayed_executions import write_numbers
 from robbdd_tools.campaign.study_changes import changed_files, changed_study, resolved_files, used_files
 from robbdd_tools.campaign.study_clauses import clause_named, clause_words
 from robbdd_tools.campaign.study_place import BATCHES, RUNS, StudyProblem
@@ -123,6 +124,10 @@ class StudyReplay:
             run.place.discard()
             remove_runs(run.place.database, (run.place.number,))
             raise StudyProblem(f"{reason}, or execute the changed files with --force")
+        if not self._force:
+            # Other files would not show what the study executed.
+            numbers = {one.key: one.number for one in executions}
+            write_numbers(run.folder, [numbers[_key(spec)] for spec in run.manifest.scenarios])
         return run
 
     def _changed(self, known: Mapping[str, str], run: Run) -> str:

@@ -28,6 +28,7 @@ from robbdd_tools.lsp.scene_preview import register_scene
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.source_documents import is_source
 from robbdd_tools.lsp.stored_runs import register_stored_runs
+from robbdd_tools.lsp.study_request import register_study_results
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.test_tree import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
@@ -59,6 +60,7 @@ def create_server() -> RobbddServer:
     register_scene(server)
     register_stored_runs(server)
     register_run_history(server)
+    register_study_results(server)
     register_projects(server)
     register_tests(server)
     register_test_results(server)

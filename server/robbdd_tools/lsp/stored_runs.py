@@ -1,7 +1,8 @@
 """The requests ``robbdd/runs`` and ``robbdd/trace``: list stored runs, and return a recorded execution for drawing.
 
-The parameters of both contain the ``uri`` of a document in the project. The schemas ``runs.schema.json`` and
-``trace.schema.json`` in ``docs/schemas`` describe the answers.
+The parameters of both contain the ``uri`` of a document in the project; that of a ``.study`` means the executions of
+the study that were executed again, and ``number`` is the number of one in the study. The schemas ``runs.schema.json``
+and ``trace.schema.json`` in ``docs/schemas`` describe the answers.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.studies import is_study
 from robbdd_tools.lsp.document_models import feature_plan
 from robbdd_tools.lsp.locations import places_of
 from robbdd_tools.lsp.parameters import Parameters
@@ -26,6 +28,7 @@ from robbdd_tools.run.store import NoSuchRun, RunStore
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.run.store import StoredRun
 
 RUNS, TRACE = "robbdd/runs", "robbdd/trace"
 Result = TypeVar("Result")
@@ -38,7 +41,7 @@ def register_stored_runs(server: RobbddServer) -> None:
     async def runs(ls: RobbddServer, params: Any) -> dict[str, Any]:
         asked = Parameters(params)
         uri = asked.text("uri")
-        return await answered(lambda: _runs(ls.stores.of(uri), asked))
+        return await answered(lambda: _runs(_store(ls, uri), asked))
 
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
@@ -51,14 +54,25 @@ def register_stored_runs(server: RobbddServer) -> None:
 
         asked = Parameters(params)
         uri = asked.text("uri")
-        found = await answered(lambda: _trace(ls.stores.of(uri), asked))
-        files, scenario = list(dict.fromkeys([uri, found.pop("model")])), found["scenario"]
+        found = await answered(lambda: _trace(_store(ls, uri), asked))
+        model, scenario = found.pop("model"), found["scenario"]
+        files = [model] if is_study(uri) else list(dict.fromkeys([uri, model]))
         placed, sentences = await ls.in_background(lambda snapshot: (places(snapshot), now(snapshot)))
         for clause in found["clauses"]:
             iri, written = clause["iri"], clause.pop("written")
             clause["source"] = placed.get(iri)
             clause["stale"] = None if sentences is None else (iri, written) not in sentences
         return {**found, "source": placed.get(scenario["variant"])}
+
+
+def _store(ls: RobbddServer, uri: str) -> RunStore:
+    path = uri_to_path(uri)
+    if path is None or not is_study(uri):
+        return ls.stores.of(uri)
+    from robbdd_tools.campaign.replayed_executions import replays_in
+    from robbdd_tools.campaign.study_place import study_folder
+
+    return replays_in(study_folder(path))
 
 
 def _runs(store: RunStore, asked: Parameters) -> dict[str, Any]:
@@ -72,12 +86,23 @@ def _runs(store: RunStore, asked: Parameters) -> dict[str, Any]:
 
 
 def _trace(store: RunStore, asked: Parameters) -> dict[str, Any]:
-    word, index = asked.run(), asked.optional_number("index")
-    if index is None:
+    word, index, number = asked.run(), asked.optional_number("index"), asked.optional_number("number")
+    if number is not None:
+        run, index = _replay(store, number)
+    elif index is None:
         run, index = find_trace(store, word, asked.others("variant", "variation", "execution", "repetition"))
     else:
         run = store.find(word or "latest")
     return {**trace_document(run, index), "model": path_to_uri(run.model())}
+
+
+def _replay(store: RunStore, number: int) -> tuple[StoredRun, int]:
+    from robbdd_tools.campaign.replayed_executions import replay_of
+
+    found = replay_of(store, number)
+    if found is None:
+        raise NoTrace(f"there is no recording of execution {number}: `robbdd study replay FILE {number}` makes one")
+    return found
 
 
 def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:

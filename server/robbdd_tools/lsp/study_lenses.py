@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 RUN_STUDY = "robbdd.runStudy"
 RESUME_STUDY = "robbdd.resumeStudy"
 SHOW_RESULTS = "robbdd.showStudyResults"
+SHOW_STUDY = "robbdd.showStudy"
 
 
 def study_lenses(ls: RobbddServer, snapshot: Snapshot, uri: str) -> list[types.CodeLens]:
@@ -28,7 +29,7 @@ def study_lenses(ls: RobbddServer, snapshot: Snapshot, uri: str) -> list[types.C
         return []
     commands = [("Run study", RUN_STUDY)]
     if has_results(study_folder(path)):
-        commands = [("Resume study", RESUME_STUDY), ("Show results", SHOW_RESULTS)]
+        commands = [("Resume study", RESUME_STUDY), ("Show results", SHOW_RESULTS), ("Show executions", SHOW_STUDY)]
     place = ls.convert.range(snapshot.document(uri), studies[0].span)
     target = {"uri": uri}
     return [types.CodeLens(place, types.Command(title, command, arguments=[target])) for title, command in commands]

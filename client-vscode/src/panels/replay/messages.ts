@@ -12,6 +12,8 @@ export interface Recording {
   /** IRI of the execution that it was run by. */
   readonly execution?: string;
   readonly repetition?: number;
+  /** Of an execution of a study, whose file is `uri`: its number in the study. */
+  readonly number?: number;
 }
 
 export type ToReplay =

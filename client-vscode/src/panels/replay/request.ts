@@ -2,7 +2,7 @@
 import { isRecord } from "../../values";
 import type { Recording } from "./messages";
 
-const NUMBERS = ["index", "variation", "repetition"] as const;
+const NUMBERS = ["index", "variation", "repetition", "number"] as const;
 
 /** The recording named by a value; undefined if it names none. */
 export function recordingOf(value: unknown): Recording | undefined {

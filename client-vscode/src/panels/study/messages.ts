@@ -1,11 +1,11 @@
 // Messages between the extension and the study page.
 import type { PackedResults } from "./packed";
 
-/** Selects a stored run. */
+/** Selects a stored run, or the executions of a `.study`. */
 export interface StudiedRun {
-  /** A document of the project. */
+  /** A document of the project; without a run, the file of the study. */
   readonly uri: string;
-  readonly run: number;
+  readonly run?: number;
 }
 
 export interface ToStudy {
