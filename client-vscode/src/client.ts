@@ -8,6 +8,7 @@ import { complain, inform, warn } from "./notices";
 import { type ServerState, afterInstallation, notInstalled } from "./presentation";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
+import { makesPictures, recordingWords, tellPictures } from "./runs/recording";
 import { openServerSetting } from "./settings";
 import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
@@ -181,6 +182,12 @@ export class Server implements vscode.Disposable {
         await openFiles(result);
       } else if (RUNNING.has(command)) {
         this.tellRefusal(argument, result);
+        if (makesPictures(command, argument)) {
+          this.runs.tell(recordingWords(result));
+        }
+        if (makesPictures(command, argument) && !isNamed(target)) {
+          tellPictures(result);
+        }
       }
       return result;
     } catch (error) {

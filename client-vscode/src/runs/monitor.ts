@@ -56,6 +56,11 @@ export class RunMonitor implements vscode.Disposable {
     }
   }
 
+  /** Print something about a run that has ended. */
+  tell(lines: readonly string[]): void {
+    this.print(lines);
+  }
+
   /** Nothing was run, for a reason to be shown at the scenarios. */
   refuse(refusal: Refusal): void {
     this.refused.fire(refusal);

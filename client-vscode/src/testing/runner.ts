@@ -4,7 +4,8 @@ import type { Server } from "../client";
 import { withoutControls } from "../literal";
 import type { RunNotification } from "../runs/messages";
 import type { Refusal, RunMonitor } from "../runs/monitor";
-import { picturesOf, problemOf, recordedIn } from "./answers";
+import { makesPictures, recordingWords } from "../runs/recording";
+import { problemOf } from "./answers";
 import { normal, normalised, sinkOf, titleOf } from "./display";
 import { RunFollower } from "./follower";
 import { type FileRun, fileRuns } from "./selection";
@@ -131,7 +132,7 @@ export class TestRunner implements vscode.Disposable {
       if (problem !== undefined) {
         follower.refuse(only.flatMap((wanted) => this.tree.wanted(uri, wanted)), problem);
       }
-      for (const line of command === "robbdd.record" || options["record"] === true ? recordingWords(answer) : []) {
+      for (const line of makesPictures(command, options) ? recordingWords(answer) : []) {
         run.appendOutput(`${withoutControls(line)}\r\n`);
       }
     });
@@ -189,15 +190,6 @@ export class TestRunner implements vscode.Disposable {
       }
     }
   }
-}
-
-/** Final output of a run with recording: paths, which the terminal turns into links. */
-function recordingWords(answer: unknown): string[] {
-  const path = (uri: string) => vscode.Uri.parse(uri).fsPath;
-  const folder = recordedIn(answer);
-  const pictures = picturesOf(answer).map((picture) => `    picture of a violation: ${path(picture)}`);
-  const recorded = `● Recording, can be replayed: ${path(folder ?? "")}${pictures.length > 0 ? "" : ". There was no violation to render."}`;
-  return folder === undefined ? pictures : [recorded, ...pictures];
 }
 
 function whenResolved(): { readonly promise: Promise<void>; readonly resolve: () => void } {

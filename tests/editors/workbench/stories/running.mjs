@@ -46,6 +46,8 @@ export function running(window) {
     const { line } = await session.placeOf(FILE, "Scenario part-to-bin");
     await workbench.goTo(line, 1);
     await verdictAt(workbench, SCENARIO, /^\? 2 of 4 executed, 2 passed$/, { timeout: LONG });
+    // Pictures are rendered after the last verdict: of violations only.
+    await workbench.page.locator(".notification-toast", { hasText: "No scenario was violated, so there is no picture." }).waitFor({ timeout: LONG });
     await workbench.screenshot("running-ended");
     const ended = JSON.parse(await session.text("pickplace/.robbdd/runs/1/results.json"));
     assert.deepEqual([ended.seed, ended.scenarios.length], [7, 2]);
