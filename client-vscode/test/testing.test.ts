@@ -105,6 +105,18 @@ async function chosen(include: string[][] | undefined, exclude: string[][] = [])
   return fileRuns(world.roots, about, include && items(include), items(exclude));
 }
 
+test("after a run the pass rates of its file and of the stories that it imports are listed again", async () => {
+  const world = new World();
+  const execution = `${FILE}x`;
+  world.files = [FILE, execution];
+  await world.tree.expand(undefined);
+  world.stories = [story({ ...variant("fetch", 3), detail: "? 2 of 3 executed, 2 passed" })];
+  world.asked.length = 0;
+  await world.tree.refresh(execution);
+  assert.deepEqual(world.asked, [execution, FILE]);
+  assert.equal(world.item("tidy", "fetch").description, "? 2 of 3 executed, 2 passed");
+});
+
 test("any selection becomes runs of whole variants or of numbers", async () => {
   const whole = [{ variant: "t:fetch" }, { variant: "t:sort" }];
   assert.deepEqual(await chosen(undefined), [{ uri: FILE, only: whole }]);

@@ -50,11 +50,16 @@ def twenty(*, brief: bool = False) -> RunResults:
 
 
 def test_rates_are_those_of_all_scenarios_and_of_factors_with_several_levels() -> None:
-    assert rate_lines(twenty().scenarios) == [
+    assert rate_lines(twenty().scenarios, 20) == [
         "all scenarios: 18 of 20 hold (90.0 %; 95 % interval 69.9 % to 97.2 %)",
         "  thing = cube: 8 of 10 hold (80.0 %; 95 % interval 49.0 % to 94.3 %)",
         "  thing = ball: 10 of 10 hold (100.0 %; 95 % interval 72.2 % to 100.0 %)",
     ]
+
+
+def test_the_rate_of_a_cancelled_run_is_not_that_of_all_scenarios() -> None:
+    shown = rate_lines(twenty().scenarios, 50)
+    assert shown[0].startswith("20 of 50 scenarios, the others have not finished: 18 of 20 hold (90.0 %;")
 
 
 def test_without_scipy_rates_have_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,14 +67,14 @@ def test_without_scipy_rates_have_no_interval(monkeypatch: pytest.MonkeyPatch) -
         raise rates.StatisticsNotInstalled
 
     monkeypatch.setattr(rates, "statistics", missing)
-    assert rate_lines(twenty().scenarios)[0] == "all scenarios: 18 of 20 hold (90.0 %)"
+    assert rate_lines(twenty().scenarios, 20)[0] == "all scenarios: 18 of 20 hold (90.0 %)"
 
 
 def test_levels_with_the_same_words_are_not_mixed() -> None:
     found = run_of([{"e:var-thing": "e:cube"}, {"e:var-thing": "other:cube"}])
     for index, outcome in enumerate(("holds", "violated")):
         finish(found, index, outcome)
-    assert [line.split(" (")[0] for line in rate_lines(found.scenarios)[1:]] == [
+    assert [line.split(" (")[0] for line in rate_lines(found.scenarios, len(found.scenarios))[1:]] == [
         "  thing = cube: 1 of 1 hold",
         "  thing = cube: 0 of 1 hold",
     ]
@@ -80,7 +85,7 @@ def test_of_a_factor_with_many_levels_the_lowest_rates_are_listed() -> None:
     found = run_of([{"e:var-mass": index} for index in range(count)])
     for index in range(count):
         finish(found, index, "violated" if index == count - 1 else "holds")
-    lines = rate_lines(found.scenarios)
+    lines = rate_lines(found.scenarios, len(found.scenarios))
     assert lines[1].startswith(f"  mass = {count - 1}: 0 of 1 hold")
     assert len(lines) == MAX_LEVELS + 2
     assert lines[-1] == "  … and 3 more levels with rates that are not lower"

@@ -102,6 +102,8 @@ async def test_chosen_scenarios_of_an_unopened_file_are_run_under_the_clients_na
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[target])
     answer: Any = await editor.client.workspace_execute_command_async(params)
     assert (answer["run"], answer["total"]) == ("mine", 2)
+    ((variant,),) = [story["tests"] for story in (await tests(editor, uri=editor.uri))["tests"]]
+    assert variant["detail"][1:].startswith(" 2 of 4 executed, ")
     assert {entry.run for entry in run_messages} == {"mine"}
     messages = [entry.message for entry in run_messages]
     assert sorted(one.variation for one in messages if one.type == "ScenarioStarted") == [2, 4]

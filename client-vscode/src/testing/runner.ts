@@ -156,6 +156,9 @@ export class TestRunner implements vscode.Disposable {
       this.followers.set(name, follower);
     }
     follower?.take(normalised(message));
+    if (message.message.type === "RunFinished") {
+      void this.tree.refresh(normal(message.uri));
+    }
     if (message.message.type === "RunFinished" && !name.startsWith(OWN)) {
       this.followers.delete(name);
       void follower?.interrupt("");

@@ -90,6 +90,15 @@ export class TestTree<I extends Item<I>> {
     return [...this.files].filter(([file, needs]) => file === uri || needs.has(uri)).map(([file]) => file);
   }
 
+  /** Load the files again whose tests a run of a file may have executed: the pass rates of variants may have changed. */
+  async refresh(uri: string): Promise<void> {
+    for (const file of new Set([uri, ...(this.files.get(uri) ?? [])])) {
+      if (this.knows(file)) {
+        await this.load(file);
+      }
+    }
+  }
+
   knows(uri: string): boolean {
     return this.files.has(uri);
   }

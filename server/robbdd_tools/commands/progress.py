@@ -203,7 +203,7 @@ class Display:
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
         for outcome, words in failure_summary(shown, self._faults) if len(shown) > 1 else ():
             self._console.print(plain(words, STYLES[outcome]))
-        for words in rate_lines(finished) if self._brief else ():
+        for words in rate_lines(finished, self._total) if self._brief else ():
             self._console.print(Text(words))
         outcomes = [scenario.verdict for scenario in shown]
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]

@@ -18,15 +18,18 @@ MAX_LEVELS = 10
 """Maximum number of levels that are listed for one factor."""
 
 
-def rate_lines(scenarios: Sequence[ScenarioResult]) -> list[str]:
+def rate_lines(scenarios: Sequence[ScenarioResult], total: int) -> list[str]:
     """Return the pass rate of all scenarios, then the pass rates of each factor with several levels.
 
+    If ``scenarios`` are only those of ``total`` scenarios that have finished, the first line says so.
     If a factor has more than ``MAX_LEVELS`` levels, only those with the lowest rates are listed.
     """
     if not scenarios:
         return []
     held = sum(one.verdict is Outcome.HOLDS for one in scenarios)
-    lines = [level_line(LevelRate("all scenarios", held, len(scenarios)))]
+    some = f"{len(scenarios):,} of {total:,} scenarios, the others have not finished"
+    words = some if len(scenarios) < total else "all scenarios"
+    lines = [level_line(LevelRate(words, held, len(scenarios)))]
     for levels in factor_rates(scenarios):
         lines += level_lines(levels)
     return lines

@@ -12,6 +12,7 @@ from urllib.parse import unquote
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.features.executions import PlacedExecution, executions_of
+from robbdd_tools.features.pass_rates import execution_rate, pass_rate
 from robbdd_tools.features.run_verdicts import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
     from lsprotocol import types
 
+    from robbdd_tools.features.pass_rates import PassRate
+    from robbdd_tools.features.run_verdicts import Findings
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.definition import Definition
@@ -48,14 +51,20 @@ def register_tests(server: RobbddServer) -> None:
             files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
             return {"problem": None, "files": files, "tests": []}
         if variant is None:
-            return await ls.in_background(lambda snapshot: _stories(snapshot, ls.convert, uri), uri)
+            await ls.stored_verdicts.look_beside(uri)
+            return await ls.in_background(
+                lambda snapshot: _stories(snapshot, ls.convert, uri, ls.findings_of(snapshot, uri)), uri
+            )
         first = max(1, asked.optional_number("first") or 1)
         most = min(MAX_SCENARIOS, asked.optional_number("most") or MAX_SCENARIOS)
         return await ls.in_background(lambda snapshot: _scenarios(snapshot, ls.convert, uri, variant, first, most), uri)
 
 
-def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]:
-    """Answer with the stories of a file. If its text has errors, answer with the stories that can be recognised."""
+def _stories(snapshot: Snapshot, convert: Converter, uri: str, findings: Findings) -> dict[str, Any]:
+    """Answer with the stories of a file. If its text has errors, answer with the stories that can be recognised.
+
+    A variant or an execution of which only some scenarios have results says so, because a tree shows that it passed.
+    """
 
     def story(listed: ListedStory) -> dict[str, Any]:
         return {
@@ -66,9 +75,10 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
 
     def variant(listed: ListedVariant) -> dict[str, Any]:
         placed = listed.placed
+        partly = _partly(pass_rate(snapshot, placed, findings, listed.count))
         return {
             **_declared("variant", placed.iri, placed.definition),
-            "detail": _counted(listed.count, "scenario"),
+            "detail": partly or _counted(listed.count, "scenario"),
             "count": listed.count,
             "digest": variant_digest(snapshot, placed),
             "variation": convert.location(snapshot, placed.definition.uri, listed.variation),
@@ -76,10 +86,11 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
 
     def execution(one: PlacedExecution) -> dict[str, Any]:
         variant, count = one.variant, number_of_scenarios(one.variant)
+        partly = _partly(execution_rate(snapshot, one, findings, count))
         return {
             **_declared("execution", one.iri, one.definition),
             "detail": " · ".join(
-                part for part in (variant.definition.symbol.path, *_execution_words(one, count)) if part
+                part for part in (partly, variant.definition.symbol.path, *_execution_words(one, count)) if part
             ),
             "variant": variant.iri,
             "count": count,
@@ -106,6 +117,10 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
 
 def _counted(count: int | None, word: str) -> str:
     return "" if count is None else f"{count:,} {word}{'' if count == 1 else 's'}"
+
+
+def _partly(rate: PassRate | None) -> str:
+    return "" if rate is None or rate.missing == 0 else rate.label
 
 
 def _execution_words(execution: PlacedExecution, count: int | None) -> Iterator[str]:
