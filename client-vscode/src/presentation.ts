@@ -29,6 +29,8 @@ export interface RunProgress {
 export interface Presentation {
   readonly text: string;
   readonly tooltip: string;
+  /** What a screen reader says; icons have no words. */
+  readonly said: string;
   readonly severity: "normal" | "warning" | "error";
   /** The command executed on a click. */
   readonly command: "robbdd.showLog" | "robbdd.showRuns" | "robbdd.statusActions" | "robbdd.installServer";
@@ -68,7 +70,8 @@ function running(runs: readonly RunProgress[]): Presentation {
   const finished = runs.reduce((sum, run) => sum + run.finished, 0);
   const total = runs.reduce((sum, run) => sum + run.total, 0);
   const text = `$(loading~spin) RobBDD ${finished}/${total}`;
-  return item(text, "Scenarios that have ended, of all in this run. Click for the messages; RobBDD: Cancel Run ends it.", "robbdd.showRuns");
+  const tooltip = "Scenarios that have ended, of all in this run. Click for the messages; RobBDD: Cancel Run ends it.";
+  return { ...item(text, tooltip, "robbdd.showRuns"), said: `RobBDD: ${finished} of ${total} scenarios have ended.` };
 }
 
 function idle(command: string, summary: string): Presentation {
@@ -79,5 +82,5 @@ function idle(command: string, summary: string): Presentation {
 }
 
 function item(text: string, tooltip: string, command: Presentation["command"]): Presentation {
-  return { text, tooltip, severity: "normal", command };
+  return { text, tooltip, said: `RobBDD: ${tooltip}`, severity: "normal", command };
 }

@@ -31,10 +31,11 @@ export class StatusItem implements vscode.Disposable {
   }
 
   private render(): void {
-    const { text, tooltip, severity, command } = present(this.server, this.runs, this.summary);
+    const { text, tooltip, said, severity, command } = present(this.server, this.runs, this.summary);
     this.item.text = text;
     this.item.tooltip = tooltip;
     this.item.command = command;
+    this.item.accessibilityInformation = { label: said };
     this.item.backgroundColor =
       severity === "normal" ? undefined : new vscode.ThemeColor(`statusBarItem.${severity}Background`);
   }

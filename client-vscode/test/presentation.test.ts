@@ -27,6 +27,12 @@ test("the number of ended scenarios is said once, and the server's own progress 
   assert.ok(!isRunProgress("robbdd-rejudge-1") && !isRunProgress(1));
 });
 
+test("a screen reader hears the progress and the state, not the names of icons", () => {
+  assert.equal(present(READY, [{ finished: 3, total: 14 }], "").said, "RobBDD: 3 of 14 scenarios have ended.");
+  assert.match(present(READY, [], "fetch.bdd: 1 of 2 scenarios passed, 1 failed.").said, /^RobBDD: Last run: fetch\.bdd: 1 of 2 scenarios passed, 1 failed\./);
+  assert.equal(present({ kind: "failed", problem: "It is not there." }, [], "").said, "RobBDD: It is not there.");
+});
+
 test("after a run its summary is shown and a click leads to the runs", () => {
   const { tooltip, command } = present(READY, [], "fetch.bdd: 2 of 2 scenarios passed.");
   assert.match(tooltip, /^Last run: fetch\.bdd: 2 of 2 scenarios passed\./);
