@@ -40,7 +40,7 @@ MAX_LINES_OF_FAILURES = 5
 class ResultHint:
     """The hint to show after ``head`` (absolute), for the clause or table row at ``span``.
 
-    - ``outcome``: the worst outcome of all variations.
+    - ``outcome``: the worst outcome of all variations; ``unknown`` if only some were executed, and these hold.
     - ``lines``: descriptions of the variations, the worst first.
     - ``stale``: true if the text has changed since the run.
     - ``failing``: the verdicts on a clause that did not hold, the worst first.

@@ -3,11 +3,14 @@ import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { accessibleInContrast, accessibleInEach } from "./harness/axe.mjs";
-import { execute } from "./harness/models.mjs";
-import { eventually, timed } from "./harness/patience.mjs";
+import { execute, study } from "./harness/models.mjs";
+import { LONG, eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 
 const FILE = "tworobots/heights.bdd";
+const STUDY = "tworobots/heights.study";
+/** The scenarios of one scale, one of which fails, as a study. */
+const STUDY_TEXT = 'import "heights.bdd"\n\nStudy heights {\n    where: "scale = 1.1"\n    seed: 1\n}\n';
 
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
@@ -113,6 +116,30 @@ step("the history of a clause lists its runs, and two of them are compared", asy
   await workbench.page.locator(".tab.active", { hasText: "(run 2)" }).waitFor();
 });
 
+step("the executions of a study of the command line are listed, and one that does not hold is executed again to replay it", async () => {
+  await workbench.command("View: Close All Editors");
+  await workbench.openFile(STUDY);
+  await workbench.codeLens("Show executions").first().click();
+  const page = workbench.webview("Study heights");
+  await page.getByRole("heading", { name: "Study heights: 3 hold, 1 violated" }).waitFor();
+  await page.getByRole("button", { name: "What does not hold" }).press("Enter");
+  await page.getByRole("heading", { name: "Do not hold: 1 execution" }).waitFor();
+  await accessibleInEach(workbench, page, "study-file");
+  await accessibleInContrast(session, page, "study-file");
+  const replay = page.locator(".executions").getByRole("button", { name: /^Replay/ });
+  await replay.press("Enter");
+  const tab = workbench.page.locator(".tab.active", { hasText: "Replay bin-heights" });
+  await tab.waitFor({ timeout: LONG });
+  assert.match(await session.text("tworobots/.robbdd/studies/heights.study/runs/1/study.json"), /^\[\d\]/);
+  await workbench.screenshot("study-file-replayed");
+  // Now there is a recording, which is shown at once.
+  await workbench.page.locator(".tab", { hasText: "Study heights" }).click();
+  await page.getByRole("button", { name: "What does not hold" }).press("Enter");
+  await replay.press("Enter");
+  await tab.waitFor();
+  assert.equal(await workbench.page.locator(".tab", { hasText: "Replay bin-heights" }).count(), 1);
+});
+
 /** Assert that a page in a narrow column shows all of its words. */
 async function noneCut(page) {
   await eventually(async () => {
@@ -134,4 +161,6 @@ async function run(workspace) {
   await writeFile(path, text.replace("<goal>, after <evt-place-end>", "<goal>, after <evt-pick-end>"));
   await execute(path, 'scale = "1.1" and robot = panda and part = cube', /1 violated/);
   await writeFile(path, text);
+  await writeFile(join(workspace, STUDY), STUDY_TEXT);
+  await study(join(workspace, STUDY), /3 of 4 hold/);
 }

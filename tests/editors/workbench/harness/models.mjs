@@ -35,9 +35,18 @@ export function renamed(text, namespace, story, scenario) {
 }
 
 /** Execute the scenarios of a model that have these values, and keep the run; its summary is expected to read so. */
-export async function execute(path, values, expected) {
+export function execute(path, values, expected) {
+  return command(["run", path, "--where", values], expected);
+}
+
+/** Execute a study; its summary is expected to read so. */
+export function study(path, expected) {
+  return command(["study", "run", path], expected);
+}
+
+async function command(args, expected) {
   const robbdd = join(dirname(LANGUAGE_SERVER), "robbdd");
   // It ends with 1 where something is violated.
-  const { stdout } = await promisify(execFile)(robbdd, ["run", path, "--where", values]).catch((error) => error);
+  const { stdout } = await promisify(execFile)(robbdd, args).catch((error) => error);
   assert.match(stdout, expected);
 }
