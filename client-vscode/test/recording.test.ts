@@ -1,4 +1,4 @@
-// Where the pictures of a run are: told when they are there, however the run was started.
+// Where the pictures of a run are: reported when they are there, however the run was started.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { makesPictures, recordingWords } from "../src/runs/recording";
@@ -15,7 +15,7 @@ const PICTURES = ["file:///cell/4/pictures/a.png", "file:///cell/4/pictures/b.pn
 for (const [given, expected] of [
   [answer(1, PICTURES), ["RobBDD: 2 pictures of violations in /cell/4/pictures"]],
   [answer(0, []), ["RobBDD: No scenario was violated, so there is no picture."]],
-  // The server has told why it could not render them.
+  // The server has reported why it could not render them.
   [answer(1, []), []],
   [{ problem: "a run is in progress", momentary: true }, []],
 ] as const) {

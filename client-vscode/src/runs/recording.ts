@@ -1,4 +1,4 @@
-// Tell where the pictures of a run are: they are rendered after its end.
+// Report where the pictures of a run are: they are rendered after its end.
 import { dirname } from "node:path";
 import * as vscode from "vscode";
 import { inform } from "../notices";
@@ -15,7 +15,7 @@ export function recordingWords(answer: unknown): string[] {
   const path = (uri: string) => vscode.Uri.parse(uri).fsPath;
   const folder = recordedIn(answer);
   const pictures = picturesOf(answer).map((picture) => `    picture of a violation: ${path(picture)}`);
-  // With violations and without pictures, the server has told why they could not be rendered.
+  // With violations and without pictures, the server has reported why they could not be rendered.
   const nothing = outcomeOf(answer)?.violated === 0 ? ". There was no violation to render." : "";
   return folder === undefined ? pictures : [`● Recording, can be replayed: ${path(folder)}${nothing}`, ...pictures];
 }
