@@ -115,7 +115,20 @@ step("axe finds no barrier in high contrast", async () => {
 
 step("who wants no motion sees none, and a replay that is asked for still plays", async () => {
   await workbench.page.emulateMedia({ reducedMotion: "reduce" });
-  const moving = await page.locator("body").evaluate(() => {
+  await motionless(page);
+  for (const tab of ["Study run", "Graph heights.bdd", "History of"]) {
+    await workbench.page.locator(".tab", { hasText: tab }).click();
+    await workbench.webview(tab).locator("h1, header").first().waitFor();
+    await motionless(workbench.webview(tab));
+  }
+  await workbench.page.locator(".tab", { hasText: "Replay bin-heights" }).click();
+  await page.locator(".row").first().waitFor();
+  await workbench.page.emulateMedia({ reducedMotion: "no-preference" });
+});
+
+/** Assert that nothing in a page moves by itself, or slides. */
+async function motionless(shown) {
+  const moving = await shown.locator("body").evaluate(() => {
     const parts = [...document.querySelectorAll("*")].map((element) => getComputedStyle(element));
     return {
       asked: matchMedia("(prefers-reduced-motion: reduce)").matches,
@@ -124,8 +137,7 @@ step("who wants no motion sees none, and a replay that is asked for still plays"
     };
   });
   assert.deepEqual(moving, { asked: true, found: 0 });
-  await workbench.page.emulateMedia({ reducedMotion: "no-preference" });
-});
+}
 
 step("in a narrow window nothing is cut off, and no name covers another", async () => {
   await workbench.page.setViewportSize(NARROW);
