@@ -15,6 +15,7 @@ from typing import Any, cast
 
 import pytest
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.protocol import default_converter
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
@@ -188,6 +189,9 @@ async def test_no_request_contacts_a_server(
             await asyncio.sleep(0.02)
     for method in ("robbdd/testResults", "robbdd/templates", "robbdd/tests", "robbdd/versions"):
         await client.protocol.send_request_async(method, {})
+    (folder / "x.study").write_text('import "remote.bdd"\n\nStudy x { }\n', encoding="utf-8")
+    with pytest.raises(JsonRpcException, match="the study has no results"):
+        await client.protocol.send_request_async("robbdd/study", {"uri": path_to_uri(folder / "x.study")})
     symbols = types.WorkspaceSymbolParams(query="")
     await client.workspace_symbol_async(symbols)
     assert contacts[1] == []
@@ -235,7 +239,7 @@ async def _ask_all(client: LanguageClient, path: Path, asked: list[str]) -> None
             for method in ("hover", "definition", "completion"):
                 await ask(method, position=position)
             await ask("references", position=position, context={"includeDeclaration": True})
-    for method in ("graph", "preview", "tests", "runs", "importResults", "study"):
+    for method in ("graph", "preview", "tests", "runs", "importResults"):
         await send(f"robbdd/{method}", {"uri": uri})
         assert asked == [], method
     for command in ("run", "record", "gherkin", "steps"):
