@@ -16,7 +16,7 @@ from lsprotocol import types
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 import robbdd_tools as robbdd
-from kit import make_endless
+from kit import MODEL, SCENE, make_endless
 from lsp_kit import PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
@@ -43,6 +43,19 @@ async def until(so: Callable[[], Awaitable[bool]]) -> None:
     async with asyncio.timeout(PATIENCE):
         while not await so():
             await asyncio.sleep(0.02)
+
+
+@pytest.mark.physics
+async def test_the_first_tree_of_tests_knows_the_stored_results(tmp_path: Path) -> None:
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    path = tmp_path / "main.bdd"
+    path.write_text(MODEL, encoding="utf-8")
+    assert main(["run", str(path), "--first", "1"]) in (0, 1)
+    client = await session(tmp_path)
+    answer = await client.protocol.send_request_async("robbdd/tests", {"uri": path_to_uri(path)})
+    ((variant,),) = [story["tests"] for story in plain(answer)["tests"]]
+    assert variant["detail"][1:].startswith(" 1 of 4 executed, ")
+    await client.shutdown_session()
 
 
 def report_ended_run(editor: Editor, number: int) -> None:

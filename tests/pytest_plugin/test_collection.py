@@ -154,6 +154,9 @@ def test_an_error_in_a_model_is_a_collection_error_with_its_place(pytester: pyte
 
 
 def test_a_warning_about_a_model_is_a_warning_of_pytest(pytester: pytest.Pytester, bench: Path) -> None:
+    scene = bench.parent / "lab.scene"
+    scene.write_text(SCENE.replace("object nut", "object nut, object gizmo"), encoding="utf-8")
+    bench.write_text(MODEL.replace("<parts.nut>", "<parts.gizmo>"), encoding="utf-8")
     warnings = [finding for finding in load(bench).diagnostics if finding.severity.name == "WARNING"]
     assert warnings
     done = session(pytester, "--robbdd", "--collect-only")

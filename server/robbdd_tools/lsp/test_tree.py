@@ -13,6 +13,7 @@ from urllib.parse import unquote
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.features.executions import PlacedExecution, executions_of
 from robbdd_tools.features.pass_rates import execution_rate, pass_rate
+from robbdd_tools.features.project_findings import ProjectFindings
 from robbdd_tools.features.run_verdicts import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
@@ -20,6 +21,7 @@ from robbdd_tools.lsp.document_models import feature_plan, reason
 from robbdd_tools.lsp.locations import Places, places_of
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.clause_places import clauses_in
+from robbdd_tools.workbench.judged_scenarios import project_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -52,8 +54,11 @@ def register_tests(server: RobbddServer) -> None:
             return {"problem": None, "files": files, "tests": []}
         if variant is None:
             await ls.stored_verdicts.look_beside(uri)
+            # Those that the server shows may be older: it gathers results before it shows them.
+            findings = ProjectFindings(ls.results, ls.rejudging.executions)
             return await ls.in_background(
-                lambda snapshot: _stories(snapshot, ls.convert, uri, ls.findings_of(snapshot, uri)), uri
+                lambda snapshot: _stories(snapshot, ls.convert, uri, findings.of_file(snapshot, uri, project_of(uri))),
+                uri,
             )
         first = max(1, asked.optional_number("first") or 1)
         most = min(MAX_SCENARIOS, asked.optional_number("most") or MAX_SCENARIOS)
