@@ -181,17 +181,12 @@ step("results of CI are imported, and a broken file says where", async () => {
 step("a run that is refused says why at the variant, until it is run again", async () => {
   await rewrite(FAILING_FILE, (text) => text.replace("Given:", "Given"));
   await workbench.waitForError();
-  await tests.runRow("part-stays");
-  await tests.turns("error", "part-stays");
+  await runsUntil("error");
   await workbench.page.locator(".part.panel", { hasText: /the\smodel\shas\serrors/ }).first().waitFor();
   await workbench.screenshot("testing-refused");
   await rewrite(FAILING_FILE, (text) => text.replace("Given", "Given:"));
   await workbench.waitForNoError();
-  // The file is read anew: its row may be replaced between pointing and clicking.
-  await eventually(async () => {
-    await tests.runRow("part-stays");
-    await tests.rowsThat("passed", "part-stays").first().waitFor({ timeout: 3 * TRY });
-  });
+  await runsUntil("passed");
 });
 
 step("after a restart the results of the session before are there", async () => {
@@ -201,6 +196,14 @@ step("after a restart the results of the session before are there", async () => 
   assert.equal(await tests.rowsThat("error").count(), 0, "what the cancelled run left open has no result");
   await workbench.screenshot("testing-restored");
 });
+
+/** Run the variant of a file that is being read anew: its row may be replaced between pointing and clicking. */
+async function runsUntil(state) {
+  await eventually(async () => {
+    await tests.runRow("part-stays");
+    await tests.rowsThat(state, "part-stays").first().waitFor({ timeout: 3 * TRY });
+  });
+}
 
 async function rewrite(file, change) {
   const text = await session.text(file);
