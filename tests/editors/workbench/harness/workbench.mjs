@@ -80,13 +80,13 @@ export class Workbench {
     await this.page.keyboard.press("Enter");
   }
 
-  /** Choose an entry of the list that a command has opened. */
+  /** Choose an entry of the list that a command, or another list, has opened. */
   async pick(text) {
-    const input = this.page.locator(QUICK_INPUT);
-    // A long list shows only its first entries until it is filtered.
-    await this.page.locator(".quick-input-list .monaco-list-row").first().waitFor();
-    await input.fill(text);
-    await this.#focusedEntry(text).waitFor();
+    await eventually(async () => {
+      // A long list shows only its first entries until it is filtered. The list before stays for a moment, and takes the text.
+      await this.page.locator(QUICK_INPUT).fill(text, { timeout: TRY });
+      await this.#focusedEntry(text).waitFor({ timeout: TRY });
+    });
     await this.page.keyboard.press("Enter");
   }
 

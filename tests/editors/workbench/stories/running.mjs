@@ -60,6 +60,7 @@ export function running(window) {
     await workbench.command("RobBDD: Run with Options…");
     await entry(/Run.*where goal=left_ws, seed 7, 1 at a time, with pictures/s).waitFor();
     await workbench.pick("Reset");
+    await entry(/Run.*all as in the model/s).waitFor();
     await workbench.pick("Scenarios");
     await workbench.pick("All combinations of 2 variables");
     await entry(/Run.*all combinations of 2 variables/s).waitFor();
