@@ -140,7 +140,6 @@ def test_implementations_of_the_model_are_levels(tmp_path: Path) -> None:
         ("factor colour: { red }", "3:8 a factor is 'scene', 'bhv' or 'var': other variables of scenarios vary"),
         ('factor scene: { "a" "b" }', "3:21 expected ',' or '}', not '\"b\"'"),
         ('factor scene: { "a", "a" }', "3:23 the level 'a' is given twice: remove one of them"),
-        ("factor bhv <x>: { a } factor bhv <x>: { b }", "3:30 this factor is given twice: write all of its levels"),
         ("scenarios: { <nothing> }", "3:14 there is no scenario 'nothing'"),
         ('where: "prt=bolt"', "3:9 where, column 1: unknown variable 'prt'"),
         ('where: "part=bullet"', "3:9 no scenario fits the selection"),
@@ -189,6 +188,29 @@ def test_the_form_of_the_file_is_checked(tmp_path: Path, text: str, expected: st
 def test_errors_of_a_model_are_reported_in_the_model(tmp_path: Path) -> None:
     study = load_study(write_study(tmp_path, model="Task (ns=x) t"))
     assert {one.place.file.rpartition("/")[2] for one in study.findings} == {"m.bdd"}
+
+
+def test_errors_of_form_and_of_content_are_reported_together(tmp_path: Path) -> None:
+    text = f'{HEAD}repeat: 0\nscenarios: {{ <gone> }}\nfactor scene: {{ "no.scenex" }}\nsede: 3\n}}'
+    assert errors(tmp_path, text) == [
+        "3:9 'repeat' is a whole number from 1 to 1000000, not 0",
+        "4:14 there is no scenario 'gone'; the model has bench-to-tray",
+        "5:18 there is no file no.scenex",
+        "6:1 'sede' is not a setting of a study: did you mean 'seed'?",
+    ]
+
+
+def test_what_could_not_be_read_is_not_reported_as_missing(tmp_path: Path) -> None:
+    assert errors(tmp_path, f"{HEAD}factor var <part>: from 0.1 to 0.2\ndesign: sobol 3\n}}") == [
+        "3:12 the values of 'part' are not numbers: the model gives it env:bolt",
+        "4:15 a Sobol design has a power of two of points: write 2 or 4",
+    ]
+    twice = errors(tmp_path, f"{HEAD}factor bhv <x>: {{ a }} factor bhv <x>: {{ b }}}}")
+    assert [one.partition(":")[0] for one in twice] == ["3", "3"]
+    assert twice[1].startswith("3:30 this factor is given twice: write all of its levels")
+    assert errors(tmp_path, "import m.bdd\nStudy s { }") == [
+        "1:8 expected the path of a model, such as \"pick.bdd\", not 'm'"
+    ]
 
 
 def test_check_reports_studies_with_other_models(

@@ -44,10 +44,10 @@ def study_diagnostics(project: Project, uri: str) -> list[Diagnostic]:
     """Return the findings about a study that need its models. The fast diagnostics have the findings about its form."""
     document, path = project.snapshot().document(uri), uri_to_path(uri)
     content, faults = read_study(document)
-    if faults or path is None:
+    if path is None:
         return []
     models = EditedModels(project)
-    loader = StudyLoader(path, document, content, models)
+    loader = StudyLoader(path, document, content, models, is_complete=not faults)
     for _ in loader.cells():
         pass
     return [*loader.faults, *(_of_models(uri, path.parent, content, models) if loader.broken else ())]

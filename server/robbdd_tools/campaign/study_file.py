@@ -165,26 +165,29 @@ def load_study(path: Path) -> Study:
         raise NotAModel(f"{path} cannot be read: {text.reason}")
     document = Document(path_to_uri(path), 0, text)
     content, faults = read_study(document)
-    if faults:
-        return Study(path, document, content, tuple(_found(document, fault) for fault in faults), None, ())
-    loader = StudyLoader(path, document, content, ModelsOnDisk())
+    loader = StudyLoader(path, document, content, ModelsOnDisk(), is_complete=not faults)
     cells = tuple(loader.cells())
-    findings = (*(_found(document, fault) for fault in loader.faults), *loader.broken)
+    own = sorted((*faults, *loader.faults), key=lambda fault: fault.span.start)
+    findings = (*(_found(document, fault) for fault in own), *loader.broken)
     return Study(path, document, content, findings, loader.model, () if findings else cells)
 
 
 class StudyLoader:
-    """Finds the combinations of levels of a study without errors of form.
+    """Finds the combinations of levels of a study.
 
     ``faults`` are the errors of the study, and ``broken`` the errors of its models. ``model`` has the models, if they
-    can be run.
+    can be run. ``is_complete`` is false if a part of the text could not be read: then what was read is checked, and no
+    setting is reported as missing.
     """
 
-    def __init__(self, path: Path, document: Document, content: StudyText, models: StudyModels) -> None:
+    def __init__(
+        self, path: Path, document: Document, content: StudyText, models: StudyModels, *, is_complete: bool = True
+    ) -> None:
         self._folder = path.parent
         self._document = document
         self._content = content
         self._models = models
+        self._is_complete = is_complete
         self.faults: list[Diagnostic] = []
         self.broken: tuple[Finding, ...] = ()
         self.model: Model | None = None
@@ -203,9 +206,10 @@ class StudyLoader:
             self._content.whole("seed"),
             default_seed=DEFAULT_SEED,
         )
-        self._report_all(form_faults(self._content))
+        if self._is_complete:
+            self._report_all(form_faults(self._content))
         self._report_all(range_faults((file.acceptance for file in self.model.runnable), self._content.ranges))
-        if self._content.ranges and not self.faults:
+        if self._content.ranges and self._is_complete and not self.faults:
             selection = replace(selection, points=self._points())
         if self._plan(replace(selection, names=()), self._content.where, "where") is None:
             if self._content.where is None:
@@ -238,6 +242,8 @@ class StudyLoader:
         return None
 
     def _model(self) -> Model | None:
+        if not self._content.imports and not self._is_complete:
+            return None
         if not self._content.imports:
             self._report(Span(0, 0), 'a study imports its models: begin with import "MODEL.bdd"')
             return None
