@@ -18,6 +18,7 @@ from robbdd_tools.graph.rdf.serialize import parse, serialize
 from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.run_options import BadSetting, RunOptions, select
 from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.run.used_files import digests
 from robbdd_tools.run.user_code import refusal
 from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.judged_scenarios import judged_scenario
@@ -228,8 +229,10 @@ def test_the_graphs_that_a_named_scenex_imports_count_in_the_run(ending: str, tm
         with plan.run(seed=1, keeping=Keeping(tmp_path / "runs" / verdict)) as run:
             (result,) = run.results
         assert {clause.name: clause.verdict for clause in result.clauses}["right-bin"] == verdict
-    stored = read_manifest(next((tmp_path / "runs" / "holds").rglob("manifest.json")).parent)
-    assert stored.scenarios == tuple(chosen.scenarios)
+    stored = next((tmp_path / "runs" / "holds").rglob("manifest.json")).parent
+    assert read_manifest(stored).scenarios == tuple(chosen.scenarios)
+    used = {Path(name).name for name in digests(read_manifest(stored), stored)}
+    assert used == {"chosen.scenex", f"known{ending}"}
 
 
 def test_a_fault_in_such_a_graph_is_an_error_of_the_scenex(tmp_path: Path) -> None:

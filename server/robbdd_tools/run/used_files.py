@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.external_systems import command_words
-from robbdd_tools.base.files import load_bytes, uri_to_path
+from robbdd_tools.base.files import load_bytes, path_to_uri, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.model_includes import model_files
 from robbdd_tools.protocol.manifest_file import MANIFEST
@@ -89,8 +89,9 @@ def _used(manifest: Manifest) -> Iterator[Path]:
         if spec.chosen_instance
     }
     for instance, model in chosen.values():
-        # The graph of the model does not contain the text of a chosen .scenex.
+        # The graph of the model does not contain the text of a chosen .scenex, nor the graphs that it imports.
         yield from (Path(file) for file in _texts(instance))
+        yield from _graphs(instance)
         yield from _model_files(instance, model)
 
 
@@ -98,6 +99,19 @@ def _texts(instance: SceneInstance) -> Iterator[str]:
     """Yield the paths of the model files that declare a scene instance and its parts."""
     parts = (instance, *instance.elements, *instance.bodies, *instance.links, *instance.laws)
     yield from dict.fromkeys(part.origin.file for part in parts if part.origin is not None)
+
+
+def _graphs(instance: SceneInstance) -> Iterator[Path]:
+    """Yield the files of the graphs that the text of a scene instance imports, directly or not."""
+    from robbdd_tools.graph.write.imported_graphs import imported_graph
+    from robbdd_tools.names.project import Project
+
+    if instance.origin is None:
+        return
+    project, uri = Project(), path_to_uri(Path(instance.origin.file))
+    project.load(uri)
+    paths = (uri_to_path(document.uri) for document in imported_graph(project.snapshot(), uri).documents)
+    yield from (path for path in paths if path is not None)
 
 
 def _model_files(instance: SceneInstance, model: str) -> Iterator[Path]:
