@@ -184,6 +184,18 @@ def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> No
     assert "scenery0/cube1" not in {made.model.body(index).name for index in range(made.model.nbody)}
 
 
+def test_bodies_of_a_world_file_whose_shapes_are_all_visual_are_untouchable(tmp_path: Path) -> None:
+    shape = '<geom type="box" size=".1 .01 .1" {}/>'
+    seen = shape.format('contype="0" conaffinity="0"')
+    wall = f'<body name="wall" pos="1 0 1">{seen}<body name="core">{shape.format("")}</body></body>'
+    bodies = f'<body name="curtain" pos="1 1 1">{seen}</body>{wall}<body name="mark"/>'
+    text = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"
+    whole = replace(file(tmp_path, "", text).models[0], iri="x:world")
+    staging = world(SceneInstance("x:cell", (whole,))).cast.staging
+    assert staging is not None
+    assert staging.untouchable == ("curtain",)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

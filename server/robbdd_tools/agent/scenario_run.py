@@ -144,12 +144,14 @@ class ScenarioRun:
         return calls_in_order((steps[line], self._known.get(line)) for line in sorted(steps))
 
     def _report_cast(self, execution: Execution) -> None:
-        """Report each element once that is not simulated, or that has an unspecific model."""
+        """Report each element once that is not simulated, that has an unspecific model, or that nothing can touch."""
         cast = execution.simulation.world.cast
         remarks = dict.fromkeys(cast.left_out, "not simulated, as no clause uses them and no .scenex places them")
         for name, model in cast.objects.items():
             if model.unspecific:
                 remarks[name] = f"simulated as '{model.name}' of the catalog, as their names say nothing more"
+        for name in () if cast.staging is None else cast.staging.untouchable:
+            remarks[name] = "no collision shapes in the model of the whole scene, so everything passes through"
         new: dict[str, list[str]] = {}
         for name, remark in remarks.items():
             if name not in self._courses.reported:

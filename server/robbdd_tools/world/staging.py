@@ -78,6 +78,12 @@ class Staging:
         """The models of the whole scene, without the bodies that are elements of the scene."""
         return tuple(spec for _, spec in self._worlds)
 
+    @property
+    def untouchable(self) -> tuple[str, ...]:
+        """The bodies of the scenery through which everything passes: all of their shapes are visual."""
+        tops = (body for spec in self.scenery for body in spec.worldbody.bodies)
+        return tuple(str(body.name) for body in tops if body.name and _is_visual(body))
+
     def carriers_first(self, elements: Iterable[str]) -> list[str]:
         """Return elements in the order of their names, with possible moving parts of others last."""
         names = {element.rpartition(":")[2]: element for element in elements}
@@ -259,6 +265,11 @@ class Staging:
                 spec.delete(spec.body(name))
                 return self._found[element].model
         return None
+
+
+def _is_visual(body: Any) -> bool:
+    shapes = body.find_all("geom")
+    return bool(shapes) and not any(shape.contype or shape.conaffinity for shape in shapes)
 
 
 def _pose(transform: Transform) -> Pose:
