@@ -184,6 +184,35 @@ def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> No
     assert "scenery0/cube1" not in {made.model.body(index).name for index in range(made.model.nbody)}
 
 
+POST = '<body name="post" pos=".6 .2 .5"><geom size=".01"/><site name="top"/></body>'
+ROPE = '<tendon><spatial name="rope"><site site="top"/><site site="hook"/></spatial></tendon>'
+
+
+@pytest.mark.parametrize(
+    ("constraint", "words"),
+    [
+        ('<equality><weld name="glue" body1="cube1"/></equality>', "the weld constraint 'glue' in"),
+        ('<equality><connect body1="post" body2="cube1" anchor="0 0 0"/></equality>', "the connect constraint in"),
+        ('<equality><weld site1="hook" site2="top"/></equality>', "the weld constraint in"),
+        (ROPE, "the tendon 'rope' in"),
+    ],
+)
+def test_an_object_that_a_constraint_of_its_file_holds_is_refused(tmp_path: Path, constraint: str, words: str) -> None:
+    """Without the constraint, a part that is welded to its fixture could be lifted."""
+    text = BLOCK.replace('name="block">', 'name="cube1" pos=".4 .2 .5"><site name="hook"/>')
+    text = text.replace("<worldbody>", f"<worldbody>{POST}").replace("</worldbody>", f"</worldbody>{constraint}")
+    whole = replace(file(tmp_path, "", text).models[0], iri="x:world")
+    with pytest.raises(SceneError, match=words):
+        world(SceneInstance("x:cell", (whole,)))
+
+
+def test_an_inactive_constraint_of_a_file_holds_nothing(tmp_path: Path) -> None:
+    text = BLOCK.replace('name="block"', 'name="cube1" pos=".4 .2 .5"')
+    weld = '<equality><weld body1="cube1" active="false"/></equality>'
+    whole = file(tmp_path, "", text.replace("</worldbody>", f"</worldbody>{weld}")).models[0]
+    assert CUBE in world(SceneInstance("x:cell", (replace(whole, iri="x:world"),))).cast.objects
+
+
 def test_bodies_of_a_world_file_whose_shapes_are_all_visual_are_untouchable(tmp_path: Path) -> None:
     shape = '<geom type="box" size=".1 .01 .1" {}/>'
     seen = shape.format('contype="0" conaffinity="0"')

@@ -14,6 +14,7 @@ from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.base.model_paths import package_share
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
+from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
@@ -175,6 +176,8 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     data: Any = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     moving = tuple(joint_bodies(model, body))
+    own = [one for one in range(model.nbody) if rigid_root(model, one, body) is not None]
+    refuse_constraints(model, own, source)
     sites = _sites(model, data, (body, *moving), body)
     parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
     main = _Rigid(model, data, body, body, source)
