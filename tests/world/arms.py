@@ -102,3 +102,26 @@ URDF = "".join(
         "</robot>",
     ]
 )
+
+SHEARS = MJCF
+"""The same arm with straight fingers of 85 mm that rotate about their roots, 16 mm apart there."""
+for _old, _new in (
+    ('<joint type="slide" range="0 0.04" armature="0.1" damping="10"/>', '<joint armature="0.002" damping="0.2"/>'),
+    ('size="0.009 0.004 0.015" mass="0.01"', 'size="0.009 0.004 0.0425" pos="0 0 0.0425" mass="0.02"'),
+    ('name="left" pos="0 0.004 0.1"', 'name="left" pos="0 0.012 0.03"'),
+    ('name="right" pos="0 -0.004 0.1"', 'name="right" pos="0 -0.012 0.03"'),
+    (
+        'name="left_slide" class="finger" axis="0 1 0"',
+        'name="left_slide" class="finger" axis="-1 0 0" range="-0.3 0.6"',
+    ),
+    (
+        'name="right_slide" class="finger" axis="0 -1 0"',
+        'name="right_slide" class="finger" axis="1 0 0" range="-0.3 0.6"',
+    ),
+    (
+        'kp="6000" kv="120" forcerange="-30 30" ctrlrange="-0.002 0.04"',
+        'kp="40" kv="1" forcerange="-2 2" ctrlrange="-0.3 0.6"',
+    ),
+):
+    assert _old in SHEARS
+    SHEARS = SHEARS.replace(_old, _new)

@@ -33,7 +33,7 @@ from robbdd_tools.world.placement import TABLE_TOP
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 from robbdd_tools.world.staging import Staging
 from world import strangers
-from world.arms import MJCF
+from world.arms import MJCF, SHEARS
 from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
 
 ARM = "env:own"
@@ -88,8 +88,8 @@ def test_an_arm_with_a_short_stroke_stands_so_low_that_it_reaches_the_table(tmp_
 @pytest.mark.physics
 @pytest.mark.parametrize(
     "text",
-    [strangers.SCARA, strangers.THUMB, strangers.SIX, strangers.VACUUM, strangers.GANTRY, strangers.RAIL, MJCF],
-    ids=["scara", "thumb", "six", "vacuum", "gantry", "rail", "five"],
+    [strangers.SCARA, strangers.THUMB, strangers.SIX, strangers.VACUUM, strangers.GANTRY, strangers.RAIL, MJCF, SHEARS],
+    ids=["scara", "thumb", "six", "vacuum", "gantry", "rail", "five", "shears"],
 )
 def test_an_arm_picks_and_places_with_the_data_in_its_file_alone(tmp_path: Path, text: str) -> None:
     run = picking(tmp_path, text)
@@ -171,6 +171,14 @@ def test_fingers_that_swing_far_ahead_are_opposite(tmp_path: Path) -> None:
 def test_the_roots_of_fingers_do_not_narrow_the_opening(tmp_path: Path) -> None:
     """The roots of the three fingers stay 23 mm apart; at their tips, a cube of 70 mm fits between them."""
     assert robot(tmp_path, strangers.JAWS).stroke > 0.07
+
+
+def test_fingers_that_rotate_open_like_shears_open_at_their_tips(tmp_path: Path) -> None:
+    """Their roots stay 16 mm apart. 37 mm from the roots, which is 35 mm from the tips, the faces are 54 mm apart."""
+    expected = 2 * (0.012 * np.cos(0.6) + 0.037 * np.sin(0.6) - 0.004)
+    assert robot(tmp_path, SHEARS).stroke == pytest.approx(expected, abs=1e-3)
+    with pytest.raises(SceneError, match=r"opens 0\.054 m, not the stated stroke of 0\.016 m"):
+        robot(tmp_path, SHEARS, ArmModel(stroke=0.016), "stated.xml")
 
 
 def test_a_mimic_joint_follows_and_the_speeds_of_a_urdf_file_count(tmp_path: Path) -> None:

@@ -66,7 +66,8 @@ def finger_grasps(
         fitting += [Grasp(grip, angle, width, below, aside, part) for angle, width in fits]
         narrowest = min(narrowest, *(width for _, width in directions))
     if not fitting:
-        raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the gripper opens {stroke:.3f} m")
+        play = "" if narrowest > stroke else f"; with {1000 * PLAY:g} mm of play, that is too little"
+        raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the gripper opens {stroke:.3f} m{play}")
     return fitting
 
 

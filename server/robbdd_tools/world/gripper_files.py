@@ -12,6 +12,7 @@ from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SimulationError
+from robbdd_tools.world.finger_opening import Opening
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
 from robbdd_tools.world.hand_direction import direction_out
@@ -41,8 +42,8 @@ class FoundGripper:
     - ``rate``: change of the actuator's value per metre that a finger moves.
     - ``settling``: how long (s) the fingers take from one end to the other.
     - ``open_joints``: the positions of the gripper's joints when it is open.
-    - ``sweep``: pairs for rotating fingers, from open to closed: the distance (m) of the faces, and how far (m) the
-      fingers then reach beyond the tool.
+    - ``sweep``: pairs for rotating fingers, from open to closed: the opening (m), and how far (m) the fingers then
+      reach beyond the tool.
     - ``middle``, ``across``, ``ahead``: the place (m) between the tips of the closed fingers, the closing direction,
       and the direction out of the hand, in the frame of the palm, shape (3,) each.
     """
@@ -131,10 +132,14 @@ class GripperReader:
             raise self._parts.error(
                 f"has faces that never meet: {described}. Name other pads, or another value for close", "close"
             )
-        stroke = self._arm.stroke
-        if stroke and abs(stroke - gaps[opened]) > CONTRADICTION * gaps[opened]:
-            raise self._parts.error(f"opens {gaps[opened]:.3f} m, not the stated stroke of {stroke:.3f} m", "stroke")
         return opened, closed
+
+    def _stroke(self, measured: float) -> float:
+        """Return the stroke (m). Raises ``SceneError`` if the stated one contradicts the measured one."""
+        stated = self._arm.stroke
+        if stated and abs(stated - measured) > CONTRADICTION * measured:
+            raise self._parts.error(f"opens {measured:.3f} m, not the stated stroke of {stated:.3f} m", "stroke")
+        return stated or measured
 
     def _face(self, name: str) -> Any:
         return gripping_face(self._parts.spec, self._source, name)
@@ -204,8 +209,9 @@ class GripperReader:
         middle = middle + (depth - middle @ ahead) * ahead
         behind = [str(joint.name) for joint in self._parts.joints]
         positions = tuple((name, float(states[opened][model.joint(name).qposadr[0]])) for name in behind)
-        stroke = self._arm.stroke or gaps[opened]
-        travel = (gaps[opened] - max(0.0, gaps[closed])) / 2
+        opening = Opening(self._parts.spec, faces, middle, ahead)
+        stroke = self._stroke(opening.at(states[opened]))
+        travel = (opening.at(states[opened]) - max(0.0, gaps[closed])) / 2
         return FoundGripper(
             GripperKind.PARALLEL,
             str(actuator.name),
@@ -219,18 +225,18 @@ class GripperReader:
             turn.T @ (middle - place),
             turn.T @ across,
             turn.T @ ahead,
-            tuple(self._sweep(model, actuator, faces, (states[opened], closed), (ahead, depth))),
+            tuple(self._sweep(model, actuator, opening, (states[opened], closed), (ahead, depth))),
         )
 
     def _sweep(
         self,
         model: Any,
         actuator: Any,
-        faces: tuple[tuple[str, ...], ...],
+        opening: Opening,
         way: tuple[FloatArray, float],
         tool: tuple[FloatArray, float],
     ) -> Iterator[tuple[float, float]]:
-        """Yield the distance of the faces (m) and how far (m) the fingers reach beyond the tool, from open to closed.
+        """Yield the opening (m) and how far (m) the fingers reach beyond the tool, from open to closed.
 
         ``way`` holds the positions of all joints when open, and the value that closes the gripper. ``tool`` holds the
         direction out of the hand, and how far the tool is along it. Sliding fingers yield nothing: they always reach
@@ -253,7 +259,7 @@ class GripperReader:
             data.qpos[:] = state
             mujoco.mj_kinematics(model, data)
             lowest = max(extent(model, data, name, tool[0])[1] for name in shapes)
-            yield gap(model, state, faces), lowest - tool[1]
+            yield opening.at(state), lowest - tool[1]
 
     def _fixed(self, model: Any) -> tuple[FloatArray, FloatArray]:
         """Return the addresses of the positions and speeds of all joints except the gripper's."""
