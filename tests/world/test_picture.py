@@ -95,6 +95,12 @@ def test_a_scene_that_cannot_be_set_up_is_explained(tmp_path: Path) -> None:
     assert render(tmp_path / "run", tmp_path / "a.png", "first").stderr.startswith("usage: ")
 
 
+def execute(run: Path) -> None:
+    command = [sys.executable, "-m", "robbdd_tools.agent", str(run)]
+    environment = {**os.environ, "MUJOCO_GL": "nonsense"}
+    subprocess.run(command, check=True, capture_output=True, env=environment, input=encode(Execute(0)).encode() + b"\n")
+
+
 @pytest.mark.physics
 def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path) -> None:
     """What is placed in one bin is violated to be in the other, from the moment on at which it is judged."""
@@ -104,9 +110,7 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
     left = tmp_path / "run" / "moments" / "000000.jsonl"
     left.parent.mkdir()
     left.write_text("left by an earlier run\n")
-    command = [sys.executable, "-m", "robbdd_tools.agent", str(tmp_path / "run")]
-    environment = {**os.environ, "MUJOCO_GL": "nonsense"}
-    subprocess.run(command, check=True, capture_output=True, env=environment, input=encode(Execute(0)).encode() + b"\n")
+    execute(tmp_path / "run")
     (moment,) = ViolationStates(tmp_path / "run")
     assert (moment.index, moment.line) == (0, spec.clauses[2].line)
     simulation = Execution(spec, calls_of(spec)).simulation
@@ -118,6 +122,19 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
     assert "Traceback" not in done.stderr
     written = [path.name for path in (tmp_path / "pictures").glob("*")]
     assert done.returncode == 3 or written == [f"fetch-1-{spec.clauses[2].name}.png"]
+
+
+@pytest.mark.physics
+def test_the_end_of_a_failed_behaviour_is_kept_with_the_run(tmp_path: Path) -> None:
+    """A bin cannot be gripped."""
+    doing = f'"{PANDA}" picks "{BIN}" and places it at "{OTHER_WS}"'
+    (spec,) = write_run(tmp_path / "run", [Steps((("when", doing),))])
+    execute(tmp_path / "run")
+    (moment,) = ViolationStates(tmp_path / "run")
+    assert (moment.index, moment.line) == (0, spec.clauses[0].line)
+    done = render(tmp_path / "run", tmp_path / "pictures", "moments", MUJOCO_GL="egl")
+    written = [path.name for path in (tmp_path / "pictures").glob("*")]
+    assert done.returncode == 3 or written == ["fetch-1-behaviour.png"]
 
 
 def test_moments_that_are_none_are_explained(tmp_path: Path) -> None:

@@ -84,8 +84,7 @@ def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
 
     for index, moments in groupby(ViolationStates(folder), key=lambda moment: moment.index):
         spec = manifest.scenarios[index]
-        names = {clause.line: clause.name for clause in spec.clauses}
-        stem = _stem(spec)
+        names, stem = _names(spec), _stem(spec)
         yield from _pictures(spec, ((output / f"{stem}-{names[moment.line]}.png", moment) for moment in moments))
 
 
@@ -109,7 +108,7 @@ def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
 
     moments = list(ViolationStates(folder))
     for index, spec in enumerate(manifest.scenarios):
-        names = {clause.line: clause.name for clause in spec.clauses}
+        names = _names(spec)
         clauses = [clause_of(clause, spec) for clause in spec.clauses if clause.role != "when"]
         execution = Execution(spec, calls_of(spec), timing_of(spec, clauses))
         execution.advance_until(lambda _: False)
@@ -117,6 +116,14 @@ def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
         path = output / f"{_stem(spec)}.webp"
         write_video(path, execution, _stem(spec), violations)
         yield path
+
+
+def _names(spec: ScenarioSpec) -> dict[int, str]:
+    """Return the name of each clause by its feature line; behaviours are numbered if there are several."""
+    behaviours = [clause.line for clause in spec.clauses if clause.role == "when"]
+    many = len(behaviours) > 1
+    found = {line: f"behaviour-{number}" if many else "behaviour" for number, line in enumerate(behaviours, start=1)}
+    return {clause.line: found.get(clause.line, clause.name) for clause in spec.clauses}
 
 
 def _stem(spec: ScenarioSpec) -> str:

@@ -310,8 +310,11 @@ class ScenarioRun:
     def _report(self, line: int, verdict: Verdict) -> None:
         if self._open.pop(line, None) is None:
             return
-        if verdict.outcome is Outcome.VIOLATED and verdict.at is not None and self._execution is not None:
-            self._moments.keep(self._index, line, verdict.at, self._execution.state_at(verdict.at))
+        if verdict.outcome is Outcome.VIOLATED and self._execution is not None:
+            # A failed behaviour has ended just now.
+            at = self._execution.trace.end if verdict.at is None and line in self._calls else verdict.at
+            if at is not None:
+                self._moments.keep(self._index, line, at, self._execution.state_at(at))
         if verdict.fault is not None and verdict.fault.id not in self._faults:
             self._faults.add(verdict.fault.id)
             self._channel.send(UserCodeFailed(self._index, verdict.fault))
