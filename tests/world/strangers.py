@@ -181,6 +181,56 @@ GANTRY = "".join(
 """Three sliding axes and a wrist in URDF, with a mimic joint and a visual mesh of a package that is not here."""
 
 
+PALLETIZER = "".join(
+    [
+        '<robot name="palletizer">',
+        _link("base", 20, _box("0.16 0.16 0.2", "0 0 0.1")),
+        _link("turret", 8, _box("0.14 0.14 0.1", "0 0 0.05")),
+        _link("upper", 4, _box("0.06 0.06 0.5", "0 0.1 0.25")),
+        _link("elbow", 1, _box("0.04 0.04 0.04")),
+        _link("fore", 3, _box("0.58 0.05 0.05", "0.29 0 0")),
+        _link("wrist", 1, _box("0.05 0.05 0.05")),
+        _link("hand", 0.8, _box("0.06 0.14 0.04", "0 0 -0.04")),
+        _link("thumb", 0.1, _box("0.02 0.01 0.06", "0 0 -0.03")),
+        _link("finger", 0.1, _box("0.02 0.01 0.06", "0 0 -0.03")),
+        _joint("j1", "base turret", "revolute", "0 0 1", "0 0 0.2", 'lower="-3" upper="3" velocity="1.5"'),
+        _joint("j2", "turret upper", "revolute", "0 1 0", "0 0 0.1", 'lower="-0.9" upper="1.2" velocity="1.5"'),
+        _joint(
+            "rod2",
+            "upper elbow",
+            "revolute",
+            "0 1 0",
+            "0 0 0.5",
+            'lower="-1.1" upper="0.9" velocity="1.2"',
+            '<mimic joint="j2" multiplier="-1"/>',
+        ),
+        _joint("j3", "elbow fore", "revolute", "0 1 0", "0 0 0", 'lower="-0.8" upper="1.5" velocity="1.5"'),
+        _joint(
+            "rod3",
+            "fore wrist",
+            "revolute",
+            "0 1 0",
+            "0.58 0 0",
+            'lower="-1.5" upper="0.8" velocity="1.5"',
+            '<mimic joint="j3" multiplier="-1"/>',
+        ),
+        _joint("j4", "wrist hand", "continuous", "0 0 -1", "0 0 -0.03", 'velocity="3"'),
+        _joint("grip", "hand thumb", "prismatic", "0 1 0", "0 0.005 -0.06", 'lower="0" upper="0.04" velocity="0.1"'),
+        _joint(
+            "follow",
+            "hand finger",
+            "prismatic",
+            "0 -1 0",
+            "0 -0.005 -0.06",
+            'lower="0" upper="0.04" velocity="0.1"',
+            '<mimic joint="grip"/>',
+        ),
+        "</robot>",
+    ]
+)
+"""Four driven joints; two others follow them like the rods of a palletizer, so that the tool stays vertical."""
+
+
 def _wheel(side: int) -> str:
     return (
         f'<body name="wheel{side}" pos="0 {0.2 * side} .08"><joint name="axle{side}" axis="0 1 0" damping=".1"/>'

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.robot_files import prepared_robot
@@ -70,6 +71,7 @@ class Arm:
         joints = [self._model.joint(name) for name in robot.joints]
         self._places = np.array([joint.qposadr[0] for joint in joints])
         self._speeds = np.array([joint.dofadr[0] for joint in joints])
+        self._coupled = coupled_by_name(self._model, robot.joints)
         limited = [bool(self._model.jnt_limited[joint.id]) for joint in joints]
         self.limited = tuple(limited)
         self.turning = tuple(self._model.jnt_type[joint.id] == int(mujoco.mjtJoint.mjJNT_HINGE) for joint in joints)
@@ -92,6 +94,7 @@ class Arm:
     def forward(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the tool's position (3,) m and rotation matrix (3, 3) for joint positions (n,) rad."""
         self._data.qpos[self._places] = joints
+        self._coupled.place(self._data.qpos)
         mujoco.mj_kinematics(self._model, self._data)
         return self._position.copy(), self._rotation.reshape(3, 3).copy()
 
@@ -116,6 +119,7 @@ class Arm:
         self.forward(joints)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
+        self._coupled.reduce(self._jacobian)
         return self._jacobian[2, self._speeds].copy()
 
     def _first_joint(self) -> tuple[float, float] | None:
@@ -189,6 +193,7 @@ class Arm:
         error = np.inf
         for _ in range(ROUNDS):
             self._data.qpos[self._places] = joints
+            self._coupled.place(self._data.qpos)
             mujoco.mj_kinematics(self._model, self._data)
             np.subtract(position, self._position, out=gap[:3])
             self._turn_left(gap[3:])
@@ -208,6 +213,7 @@ class Arm:
     def _improve(self, joints: FloatArray, gap: FloatArray, posture: FloatArray) -> FloatArray:
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
+        self._coupled.reduce(self._jacobian)
         jacobian = self._jacobian[:, self._speeds]
         homewards = posture - joints
         moved = joints + self._step(jacobian, gap, homewards)

@@ -61,6 +61,7 @@ class Clearance:
         """Return the deepest collision of the arm with open fingers."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._robot.joints] = joints
+        self._robot.coupled.place(self._data.qpos)
         self._simulation.open_fingers(self._robot, self._data, self._control)
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)

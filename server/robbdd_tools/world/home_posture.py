@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.self_collision import NEAR
@@ -89,6 +90,7 @@ class _Search:
         self._site = model.site(tool).id
         numbers = [model.joint(joint).id for joint in joints]
         self._places, self._speeds = model.jnt_qposadr[numbers], model.jnt_dofadr[numbers]
+        self._coupled = coupled_by_name(model, joints)
         limited = model.jnt_limited[numbers].astype(bool)
         wide = np.where(model.jnt_type[numbers] == int(mujoco.mjtJoint.mjJNT_SLIDE), 1.0, np.pi)
         self._low = np.where(limited, model.jnt_range[numbers, 0], -wide)
@@ -182,6 +184,7 @@ class _Search:
 
     def _forward(self, posture: FloatArray) -> tuple[FloatArray, FloatArray]:
         self._data.qpos[self._places] = posture
+        self._coupled.place(self._data.qpos)
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
 
@@ -189,6 +192,7 @@ class _Search:
         jacobian = np.zeros((6, self._model.nv))
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
+        self._coupled.reduce(jacobian)
         return jacobian[:, self._speeds]
 
     def _solved(self, start: FloatArray, goal: FloatArray, across: FloatArray | None = None) -> FloatArray | None:

@@ -127,6 +127,7 @@ class KinematicSimulation(Simulation):
         began = perf_counter()
         for name, robot in self.robots.items():
             self.data.qpos[robot.joints] = self._goals[name]
+            robot.coupled.place(self.data.qpos)
             if robot.mobile is not None and name in self._bases:
                 self.data.qpos[robot.mobile.joints] = self._bases[name]
             self._move_fingers(robot)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.world.coupled_joints import coupled_joints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.mobile_base import BaseState, base_of
@@ -35,6 +36,7 @@ class Robot:
         joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
         self.joints = np.array([joint.qposadr[0] for joint in joints])
         self.speeds = np.array([joint.dofadr[0] for joint in joints])
+        self.coupled = coupled_joints(model, [joint.id for joint in joints])
         on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
         driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
         self.limited = np.array([joint.qposadr[0] for joint in joints if model.jnt_limited[joint.id]], dtype=int)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from functools import lru_cache
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,15 @@ import numpy as np
 from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.catalog.executable import ArmModel, ModelEntry
 from robbdd_tools.world.arm_chain import chain_to_palm
+from robbdd_tools.world.coupled_joints import (
+    coupled_by_name,
+    followers_among,
+    leaders_of,
+    refuse_uncoupled,
+    slowest,
+    stiffen,
+    tighten,
+)
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import (
@@ -46,6 +56,8 @@ FREQUENCY, RATIO = 20.0, 0.7
 """Natural frequency (rad/s) and damping ratio of servos that are added to joints with a large inertia."""
 LIGHT, ROTOR = 0.01, 0.1
 """A joint with an inertia below this share (``LIGHT``) of damping times time step gets a rotor with the other share."""
+STEADY = 5.0
+"""A joint that others follow has an inertia of at least this many times its damping times the time step."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
@@ -90,6 +102,13 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     chain = path_to(spec.body(semantics.palm)) if uses_group else _chain(spec, source, arm, changes)
     changes += make_solid(spec)
     joints = _joints(source, chain)
+    refuse_uncoupled(spec, source, chain, joints)
+    if followers := followers_among(spec, joints):
+        changes.append(f"joints that follow others of the arm: {', '.join(followers)}")
+        joints = tuple(joint for joint in joints if joint not in followers)
+        if source.format == "urdf":
+            stiffen(spec, followers)
+        tighten(spec, compiled(spec, source), joints)
     is_mobile = drives(compiled(spec, source), joints)
     joints = joints[BASE_JOINTS:] if is_mobile else joints
     if is_mobile and tilt is not None and tilt.rotation != UPRIGHT:
@@ -101,7 +120,10 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     gripper = GripperReader(parts).read()
     tool = tool_of(spec, source, arm.tool, gripper, chain[-1])
     velocity = arm.velocity or velocity_limits(source, spec, joints, SPEED)
-    _servos(spec, joints)
+    if followers and not arm.velocity:
+        others = dict(zip(followers, velocity_limits(source, spec, followers, inf), strict=True))
+        velocity = slowest(compiled(spec, source), joints, velocity, others)
+    _servos(spec, joints, followers)
     changes += _without_idle_forces(spec, {gripper.actuator}, chain)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
@@ -171,13 +193,17 @@ def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
     return joints
 
 
-def _servos(spec: Any, joints: tuple[str, ...]) -> None:
+def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> None:
     """Replace the motor or velocity servo of each joint without a position servo by a position servo.
 
-    A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too.
+    A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too. Followers
+    are not driven.
     """
     driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
-    inertias = _inertias(spec, joints)
+    for joint in followers:
+        if joint in driven:
+            spec.delete(driven[joint])
+    inertias, leaders = _inertias(spec, joints), leaders_of(spec, followers)
     for joint in joints:
         actuator = driven.get(joint)
         if actuator is not None and _is_position_servo(actuator):
@@ -187,13 +213,19 @@ def _servos(spec: Any, joints: tuple[str, ...]) -> None:
             limit = _largest_force(actuator)
             spec.delete(actuator)
         sliding = SLIDING if spec.joint(joint).type == mujoco.mjtJoint.mjJNT_SLIDE else 1.0
-        stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertias[joint])
-        damping = max(DAMPING * sliding, 2 * RATIO * (stiffness * inertias[joint]) ** 0.5)
+        inertia, least = inertias[joint], DAMPING * sliding
+        if joint in leaders:
+            # The engine solves ties without the damping of servos: a light joint would shake. Real drives have rotors.
+            rotor = max(0.0, STIFFNESS * sliding * (STEADY * 2 * RATIO * TIMESTEP) ** 2 - inertia)
+            spec.joint(joint).armature += rotor
+            inertia, least = inertia + rotor, 0.0
+        stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertia)
+        damping = max(least, 2 * RATIO * (stiffness * inertia) ** 0.5)
         servo = spec.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         servo.set_to_position(kp=stiffness, kv=damping)
         if limit > 0:
             servo.forcerange, servo.forcelimited = [-limit, limit], True
-            if inertias[joint] < LIGHT * damping * TIMESTEP:
+            if inertia < LIGHT * damping * TIMESTEP:
                 # At its force limit, a servo of so light a joint would hit back and forth. Real drives have rotors.
                 spec.joint(joint).armature += ROTOR * damping * TIMESTEP
 
@@ -247,7 +279,8 @@ def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
     mujoco.mj_forward(model, data)
     full = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, full)
-    return {joint: float(full[dof, dof]) for joint in joints for dof in [int(model.joint(joint).dofadr[0])]}
+    coupled = coupled_by_name(model, joints)
+    return {joint: coupled.inertia(full, int(model.joint(joint).dofadr[0])) for joint in joints}
 
 
 def _refuse_outside(model: Any, source: ModelSource, joints: tuple[str, ...], home: tuple[float, ...]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.finger_motion import finger_motion
 
@@ -66,6 +67,7 @@ def _touching_at_home(child: Any, robot: RobotModel) -> Iterator[tuple[int, int]
     data = mujoco.MjData(model)
     for joint, angle in zip(robot.joints, robot.home, strict=True):
         data.qpos[model.joint(joint).qposadr[0]] = angle
+    coupled_by_name(model, robot.joints).place(data.qpos)
     motion = finger_motion(robot)
     for name, position in motion.open_joints:
         data.qpos[model.joint(name).qposadr[0]] = position

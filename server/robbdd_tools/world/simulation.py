@@ -330,6 +330,7 @@ class Simulation:
         for robot in self.robots.values():
             home = np.array(robot.model.home)
             self.data.qpos[robot.joints] = home
+            robot.coupled.place(self.data.qpos)
             self.open_fingers(robot, self.data)
             self.data.act[robot.targets] = home
             self.command(robot, home, robot.model.gripper_open)

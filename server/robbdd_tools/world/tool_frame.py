@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.api import GripperKind
+from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.hand_direction import BETWEEN_FINGERS
 from robbdd_tools.world.model_files import compiled
@@ -72,6 +73,7 @@ def face_ahead(spec: Any, model: Any, joints: tuple[str, ...], home: tuple[float
     data: Any = mujoco.MjData(model)
     for joint, value in zip(joints, home, strict=True):
         data.qpos[model.joint(joint).qposadr[0]] = value
+    coupled_by_name(model, joints).place(data.qpos)
     mujoco.mj_kinematics(model, data)
     site = spec.site(TOOL)
     place, ahead = data.site(TOOL).xpos, data.site(TOOL).xmat[0::3]
