@@ -77,3 +77,15 @@ def test_the_timeout_of_an_execution_bounds_its_simulated_time(tmp_path: Path) -
     assert told["at-goal"]["verdict"] == bounded["verdict"] == "unknown"
     assert "the execution was stopped after 2 s of simulated time" in told["at-goal"]["reason"]
     assert other["verdict"] == "holds"
+
+
+def test_the_last_line_names_the_seeds_that_executions_state(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = example(tmp_path, "ownrobot") / "tidy.bddx"
+    text = model.read_text(encoding="utf-8")
+    model.write_text(text.replace("seed: 1", "seed: 77"), encoding="utf-8")
+    run(model, "--first", "1")
+    assert "(seed 77;" in capsys.readouterr().out
+    run(model, "--first", "1", "--seed", "5")
+    assert "(seed 5;" in capsys.readouterr().out

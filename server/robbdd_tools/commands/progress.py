@@ -215,8 +215,15 @@ class Display:
         again = f"; {_counted(resampled, 'initial place')} drawn again" if resampled else ""
         self._console.print(
             f"{_counted(self._total, 'scenario')}: {', '.join(counts)}"
-            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s {self._made} {wall:.1f} s{shared}{again})"
+            f"  ({self._seeds(shown)}; {simulated:.1f} s {self._made} {wall:.1f} s{shared}{again})"
         )
+
+    def _seeds(self, shown: Iterable[ScenarioResult]) -> str:
+        """Return the seeds from which those of the executions were computed: executions of a model may state theirs."""
+        stated = (scenario.spec.execution for scenario in shown)
+        own = (None if execution is None else execution.seed for execution in stated)
+        seeds = dict.fromkeys(self._results.manifest.seed if seed is None else seed for seed in own)
+        return f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds)) or self._results.manifest.seed}"
 
     def _counts(self) -> Text:
         """Return the counts as the editor does: a violated scenario has failed, an unknown one has errored."""

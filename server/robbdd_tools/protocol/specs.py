@@ -60,6 +60,7 @@ class ExecutionSpec:
     - ``policies``: judge the clauses that they name by IRI. Their observations are CURIEs.
     - ``repeat``: the number of executions.
     - ``timeout``: the limit in s of simulated time.
+    - ``seed``: the seed that it states, unless the run's options replace it.
     """
 
     iri: str
@@ -69,6 +70,7 @@ class ExecutionSpec:
     policies: tuple[Policy, ...] = ()
     repeat: int = 1
     timeout: float | None = None
+    seed: int | None = None
 
 
 NO_PHYSICS = "kinematic world: no physics"

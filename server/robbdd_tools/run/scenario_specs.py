@@ -107,6 +107,7 @@ class SpecWriter:
             tuple(self._policy(policy) for policy in execution.policies),
             execution.repeat,
             execution.timeout,
+            execution.seed,
         )
 
     def _instance(self, scene: SceneInstance) -> SceneInstance:
