@@ -250,3 +250,38 @@ _PLATFORM = (
 )
 ROVER = SIX.replace(_STANDING, _PLATFORM)
 """The same arm with two fingers on a platform that drives, with two wheels that only show it."""
+
+
+def _light(name: str, mass: float, size: str, at: str) -> str:
+    inertia = f'<inertia ixx="{mass / 1000}" iyy="{mass / 1000}" izz="{mass / 1000}" ixy="0" ixz="0" iyz="0"/>'
+    inertial = f'<inertial><origin xyz="{at}"/><mass value="{mass}"/>{inertia}</inertial>'
+    return f'<link name="{name}">{inertial}{_box(size, at)}</link>'
+
+
+def _servo(name: str, ends: str, axis: str, at: str, low: float, high: float) -> str:
+    return _joint(name, ends, "revolute", axis, at, f'lower="{low}" upper="{high}" velocity="4"')
+
+
+DESK = "".join(
+    [
+        '<robot name="desk">',
+        _light("base", 0.4, "0.1 0.08 0.05", "0 0 0.025"),
+        _light("shoulder", 0.15, "0.05 0.05 0.05", "0 0 0.025"),
+        _light("upper", 0.15, "0.14 0.03 0.03", "0.06 0 0"),
+        _light("lower", 0.12, "0.13 0.026 0.026", "0.06 0 0"),
+        _light("wrist", 0.08, "0.05 0.03 0.03", "0.025 0 0"),
+        _light("gripper", 0.09, "0.03 0.04 0.03", "0.015 0 0"),
+        _light("fixed_jaw", 0.02, "0.09 0.008 0.02", "0.045 0 0"),
+        _light("moving_jaw", 0.02, "0.09 0.008 0.02", "0.045 0 0"),
+        _servo("pan", "base shoulder", "0 0 1", "0 0 0.05", -1.9, 1.9),
+        _servo("lift", "shoulder upper", "0 1 0", "0 0 0.05", -2, 1.8),
+        _servo("elbow", "upper lower", "0 1 0", "0.135 0 0", -1.7, 2.6),
+        _servo("pitch", "lower wrist", "0 1 0", "0.125 0 0", -1.7, 1.9),
+        _servo("roll", "wrist gripper", "1 0 0", "0.05 0 0", -2.8, 2.8),
+        '<joint name="mount" type="fixed"><parent link="gripper"/><child link="fixed_jaw"/>'
+        '<origin xyz="0.03 -0.012 0"/></joint>',
+        _servo("grip", "gripper moving_jaw", "0 0 1", "0.03 0.012 0", -0.2, 1.6),
+        "</robot>",
+    ]
+)
+"""A desktop arm of 1 kg in URDF that reaches 0.4 m. One jaw closes on the other one, 16 mm beside its root."""

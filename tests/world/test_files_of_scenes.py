@@ -176,16 +176,3 @@ def test_the_arm_stands_where_the_scene_maps_a_body_of_its_file(tmp_path: Path) 
     assert data.body(f"{ARM}/foot").xmat == pytest.approx(np.eye(3).ravel(), abs=1e-6)
     data = Simulation(placed(tmp_path, text, 0.15)).data
     assert data.body(f"{ARM}/foot").xpos == pytest.approx([0.3, 0.2, 0.25])
-
-
-@pytest.mark.parametrize(("name", "said"), [("moving_jaw", True), ("wrist_3", False)])
-def test_a_single_jaw_is_called_one(tmp_path: Path, name: str, said: bool) -> None:
-    begin, end = (
-        MJCF.index('<body name="left"'),
-        MJCF.index("</body>", MJCF.index('<body name="right"')) + len("</body>"),
-    )
-    text = (MJCF[:begin] + MJCF[end:]).replace('name="hand"', f'name="{name}"')
-    text = text[: text.index("<equality>")] + "</mujoco>"
-    with pytest.raises(SceneError, match="has no gripper") as error:
-        robot(tmp_path, text)
-    assert (f"'{name}' seems to be a jaw: grippers with one moving jaw are not supported" in str(error.value)) == said

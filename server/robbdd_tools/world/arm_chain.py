@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,10 @@ if TYPE_CHECKING:
 
 TO_HAND = 3
 """An arm has at least this many joints above its hand; a finger of several links has fewer above a branch."""
+_JAW = re.compile(r"jaw|grip|finger|claw|mover", re.IGNORECASE)
+"""Words in the names of links and joints that are jaws."""
+WIDE, LONG = 2.5, 0.2
+"""A jaw turns (rad) or slides (m) by at most this much; a wrist turns farther."""
 BARE = 6
 """A branch without fingers is an arm from this many joints on, if it is no finger of an arm itself."""
 
@@ -30,7 +35,8 @@ def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
     """Return the bodies from the base to the palm, which carries all gripping faces. Raises ``SceneError``.
 
     Without stated faces, the palm is the first body with several jointed branches of which none leads to a hand, or
-    else the last body, but no body beyond the stated tool. Of several hands, the one that carries the tool is chosen.
+    else the last body, but no body beyond the stated tool. If the last body is a jaw, the palm is the body before it.
+    Of several hands, the one that carries the tool is chosen.
     """
     tool = path_to(tool_body(spec, source, arm.tool)) if arm.tool else []
     carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
@@ -48,6 +54,8 @@ def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
         body = spec.body(str(suctions[0].target))
     if not branches and len(carriers) == 1 and carriers[0] is not None:
         body = carriers[0]
+    elif not branches and not suctions and not tool and is_jaw(body):
+        body = body.parent
     if body.name == "world":
         text = f"{source.name} is not one arm: " + (
             f"{len(branches)} chains of joints begin at its base" if branches else "it has no joints"
@@ -55,6 +63,15 @@ def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
         raise SceneError(text, origin=source.origin)
     common = {one.name for one in tool}
     return Chain([one for one in path_to(body) if not tool or one.name in common], beside)
+
+
+def is_jaw(body: Any) -> bool:
+    """Return whether the last body of a chain is a jaw that closes on the hand before it, by its name and its range."""
+    if len(body.joints) != 1 or not any(_JAW.search(str(one.name)) for one in (body, *body.joints)):
+        return False
+    (joint,) = body.joints
+    turns = joint.type == mujoco.mjtJoint.mjJNT_HINGE
+    return 0.0 < float(joint.range[1] - joint.range[0]) <= (WIDE if turns else LONG)
 
 
 def _descent(spec: Any, source: ModelSource, named: list[str]) -> tuple[list[Any], tuple[str, ...]]:

@@ -20,6 +20,7 @@ class FingerMotion:
     - ``faces``: the geoms of each gripping face; empty if each pad is one.
     - ``sweep``: pairs, from open to closed: the distance (m) of the faces, and how far (m) the fingers then reach
       beyond the tool; empty if the fingers slide.
+    - ``one_sided``: whether only one jaw moves, along the tool's y axis: the tool is at the surface of the other one.
     """
 
     rate: float = 1.0
@@ -27,6 +28,7 @@ class FingerMotion:
     open_joints: tuple[tuple[str, float], ...] = ()
     faces: tuple[tuple[str, ...], ...] = ()
     sweep: tuple[tuple[float, float], ...] = ()
+    one_sided: bool = False
 
     def reach(self, width: float) -> float:
         """Return how far (m) the fingers reach beyond the tool at most until they have closed to a width (m)."""

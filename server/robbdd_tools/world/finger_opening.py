@@ -48,6 +48,14 @@ class Opening:
         found = min((self._across(level) for level in np.linspace(bottom, top, LEVELS)), default=distance)
         return found if found > distance + SKEW else distance
 
+    def to_second(self, state: FloatArray) -> float:
+        """Return the distance (m) of the second face from the middle point at joint positions ``state``, signed."""
+        self._data.qpos[:] = state
+        mujoco.mj_kinematics(self._model, self._data)
+        probe = self._model.geom(_PROBE).id
+        self._data.geom_xpos[probe] = self._middle
+        return min(self._distance(probe, self._model.geom(name).id) for name in self._faces[1])
+
     def _across(self, level: float) -> float:
         """Return the distance (m) between the faces at a level (m) along the direction out of the hand."""
         probe = self._model.geom(_PROBE).id

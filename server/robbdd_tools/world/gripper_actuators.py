@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +14,6 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ArmModel, ModelSource
 
-_JAW = re.compile(r"jaw|grip|finger|claw|mover", re.IGNORECASE)
-"""Words in the names of links and joints that are jaws."""
 GRIP_FORCE = 15.0
 """Force (N) of each finger of a gripper whose file has no actuator."""
 GRIP_STIFFNESS, GRIP_DAMPING = 3000.0, 60.0
@@ -98,14 +95,8 @@ class GripperActuator:
             return self._vacuum(self._arm.pads[0])
         lacks = f"beyond the body '{self._parts.palm}', the file has no joints and no actuators"
         wanted = 'Name a file with arm and gripper, or the face of a suction cup: gripper { pads: "cup" stroke: 30 mm }'
-        text = f"the arm in {self._source.name} has no gripper: {lacks}. {self._jaw()}{wanted}"
+        text = f"the arm in {self._source.name} has no gripper: {lacks}. {wanted}"
         raise SceneError(text, origin=self._source.origin)
-
-    def _jaw(self) -> str:
-        """Return a sentence about the last link if its name says that it is a jaw itself, else nothing."""
-        palm = self._spec.body(self._parts.palm)
-        named = [str(one.name) for one in (palm, *palm.joints) if _JAW.search(str(one.name))]
-        return f"'{named[0]}' seems to be a jaw: grippers with one moving jaw are not supported. " if named else ""
 
     def _is_behind(self, actuator: Any) -> bool:
         """Return whether an actuator drives a part of the gripper."""

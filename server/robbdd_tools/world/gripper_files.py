@@ -15,7 +15,7 @@ from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.finger_opening import Opening
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
-from robbdd_tools.world.hand_direction import direction_out
+from robbdd_tools.world.hand_direction import finger_frame, jaw_frame
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -44,6 +44,7 @@ class FoundGripper:
     - ``open_joints``: the positions of the gripper's joints when it is open.
     - ``sweep``: pairs for rotating fingers, from open to closed: the opening (m), and how far (m) the fingers then
       reach beyond the tool.
+    - ``one_sided``: whether the second face does not move: one jaw closes on the hand.
     - ``middle``, ``across``, ``ahead``: the place (m) between the tips of the closed fingers, the closing direction,
       and the direction out of the hand, in the frame of the palm, shape (3,) each.
     """
@@ -61,6 +62,7 @@ class FoundGripper:
     across: FloatArray
     ahead: FloatArray
     sweep: tuple[tuple[float, float], ...] = ()
+    one_sided: bool = False
 
     @property
     def pads(self) -> tuple[str, ...]:
@@ -86,7 +88,7 @@ class GripperReader:
         low, high = self._controls(actuator)
         model = self._parts.compiled()
         states = {control: self._settled(model, actuator, control) for control in (low, high)}
-        faces = self._given_faces(model) or self._found_faces(model, states)
+        faces = self._moving_first(model, self._given_faces(model) or self._found_faces(model, states))
         gaps = {control: gap(model, state, faces) for control, state in states.items()}
         opened, closed = self._senses(gaps)
         return self._fingers(model, actuator, faces, (opened, closed), states, gaps)
@@ -150,6 +152,15 @@ class GripperReader:
             raise self._parts.error("has gripping faces without a collision shape")
         return tuple((name,) for name in names)
 
+    def _moving_first(self, model: Any, faces: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
+        """Return the faces with one that is part of the hand last."""
+        return tuple(sorted(faces, key=lambda face: self._is_fixed(model, face)))
+
+    def _is_fixed(self, model: Any, face: tuple[str, ...]) -> bool:
+        """Return whether a face is part of the hand."""
+        hand = int(model.body_weldid[model.body(self._palm).id])
+        return int(model.body_weldid[int(model.geom_bodyid[model.geom(face[0]).id])]) == hand
+
     def _found_faces(self, model: Any, states: dict[float, FloatArray]) -> tuple[tuple[str, ...], ...]:
         bodies = [int(model.body(body.name).id) for body in self._parts.bodies]
         faces = meeting_faces(model, bodies, states)
@@ -189,20 +200,14 @@ class GripperReader:
         gaps: dict[float, float],
     ) -> FoundGripper:
         opened, closed = controls
+        one_sided = self._is_fixed(model, faces[1])
+        palm = model.body(self._palm).id
+        ends = states[closed], states[opened]
+        middle, across, ahead = (jaw_frame if one_sided else finger_frame)(model, palm, faces, *ends)
         data = mujoco.MjData(model)
         data.qpos[:] = states[closed]
         mujoco.mj_kinematics(model, data)
-        palm = model.body(self._palm).id
         place, turn = data.xpos[palm], data.xmat[palm].reshape(3, 3)
-        centers = [np.mean([data.geom_xpos[model.geom(name).id] for name in face], axis=0) for face in faces[:2]]
-        middle = np.mean(centers, axis=0)
-        data.qpos[:] = states[opened]
-        mujoco.mj_kinematics(model, data)
-        first, second = (np.mean([data.geom_xpos[model.geom(n).id] for n in face], axis=0) for face in faces[:2])
-        across = (first - second) / np.linalg.norm(first - second)
-        ahead = direction_out(model, data, palm, middle, across)
-        data.qpos[:] = states[closed]
-        mujoco.mj_kinematics(model, data)
         reached = [extent(model, data, name, ahead) for face in faces[:2] for name in face]
         bottom, top = min(low for low, _ in reached), max(high for _, high in reached)
         depth = top - min(TIP, (top - bottom) / 2)
@@ -210,8 +215,15 @@ class GripperReader:
         behind = [str(joint.name) for joint in self._parts.joints]
         positions = tuple((name, float(states[opened][model.joint(name).qposadr[0]])) for name in behind)
         opening = Opening(self._parts.spec, faces, middle, ahead)
-        stroke = self._stroke(opening.at(states[opened]))
-        travel = (opening.at(states[opened]) - max(0.0, gaps[closed])) / 2
+        if one_sided:
+            middle = middle - opening.to_second(states[closed]) * across
+            opening = Opening(self._parts.spec, faces, middle, ahead)
+        sweep = tuple(self._sweep(model, actuator, opening, (states[opened], closed), (ahead, depth)))
+        widest = opening.at(states[opened])
+        if one_sided:
+            widest = max([widest, *(width for width, _ in sweep)])
+        stroke = self._stroke(widest)
+        travel = (widest - max(0.0, gaps[closed])) / (1 if one_sided else 2)
         return FoundGripper(
             GripperKind.PARALLEL,
             str(actuator.name),
@@ -225,7 +237,8 @@ class GripperReader:
             turn.T @ (middle - place),
             turn.T @ across,
             turn.T @ ahead,
-            tuple(self._sweep(model, actuator, opening, (states[opened], closed), (ahead, depth))),
+            sweep,
+            one_sided,
         )
 
     def _sweep(

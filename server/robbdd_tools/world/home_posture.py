@@ -24,8 +24,8 @@ SEEDS = 40
 ROUNDS = 80
 CLOSE = 1e-3
 """A posture is accepted if its pose error is below this (m and rad)."""
-DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15)
-"""Places of the tool: shares of the arm's reach ahead of the base, and heights (m) above it."""
+DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15, 0.08, 0.03)
+"""Places of the tool: shares of the reach ahead of the base, and heights (m) above it, low ones for desktop arms."""
 TRAVEL, GRASP = (0.35, 0.45, 0.25, 0.60, 0.80), (0.30, 0.15)
 """Heights (m) above the world's origin for a tilted arm: it works at the heights of tables, wherever it is fixed.
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby
-from math import nan, pi
+from math import cos, nan, pi, remainder, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,14 +15,16 @@ from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.grasp import Grasp
 from robbdd_tools.world.gripper import gripper_of
-from robbdd_tools.world.motion import ToolPose, frame_of, tool_pose
+from robbdd_tools.world.motion import ToolPose, frame_of, tool_pose, yaw_of
 from robbdd_tools.world.travel_clearance import is_roofed
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.arm_kinematics import Arm
+    from robbdd_tools.world.placement import Pose
     from robbdd_tools.world.robot import Robot
     from robbdd_tools.world.simulation import Simulation
 
@@ -33,6 +35,10 @@ HIGH, LIFT = 0.25, 0.10
 
 There, objects are approached and left ``LIFT`` (m) above the grasp.
 """
+JAW_ROOM = 0.003
+"""Room (m) between an object and the jaw that does not move; the other one pushes the object through it."""
+LOWEST, STEP = 0.04, 0.02
+"""A small arm travels at least this high (m) above a pose; its travelling height is lowered in steps (m)."""
 SAME = 1e-4
 """A sample reuses the previous reach margin if the state has changed by less than this (m, rad)."""
 
@@ -73,9 +79,28 @@ class Obstruction:
 
 
 def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
-    """Return a tool pose raised to the travelling height or, if this is above the arm's stroke, to the stroke's end."""
+    """Return a tool pose raised to the travelling height or, if the arm does not reach so high there, less far."""
+    arm = arm_of(robot.model)
     height = robot.model.travel_height - robot.base.position[2]
-    return replace(pose, height=max(min(height, arm_of(robot.model).stroke[1] - SAME), pose.height))
+    over = replace(pose, height=max(min(height, arm.stroke[1] - SAME), pose.height))
+    # The paths of the catalog's arms are published results.
+    return over if arm.is_published else _lowered(arm, over, pose.height + LOWEST)
+
+
+def _lowered(arm: Arm, over: ToolPose, lowest: float) -> ToolPose:
+    """Return a tool pose, lowered in steps until the arm reaches it, but not below a height (m); else unchanged.
+
+    A pose that had to be lowered is a further step lower: at the edge of its reach, an arm cannot follow a path.
+    """
+    for height in np.arange(over.height, lowest, -STEP).tolist():
+        lower = replace(over, height=height)
+        place, turn = frame_of(lower)
+        try:
+            arm.solve(arm.towards(place), place, turn)
+        except Unreachable:
+            continue
+        return lower if height == over.height else replace(over, height=max(height - STEP, lowest))
+    return over
 
 
 def is_high(robot: Robot, pose: ToolPose, below: float) -> bool:
@@ -149,9 +174,12 @@ def approaches_by(
 
     ``over`` returns the pose from which a grasp is approached; by default, it is at the travelling height.
     """
-    arm = arm_of(robot.model)
-    for grasp in grasps:
+    arm, one_sided = arm_of(robot.model), finger_motion(robot.model).one_sided
+    for centred in grasps:
+        grasp = centred
         for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
+            if one_sided:
+                at, grasp = _beside_fixed_jaw(robot.base, at, centred)
             above = at_travel(robot, at) if over is None else over(at, grasp)
             try:
                 joints = joints_at(arm, above, at)
@@ -162,6 +190,17 @@ def approaches_by(
             hit = clearance.hit(joints)
             yield Approach(grasp, above, at, joints, hit.depth, hit.owner)
             break
+
+
+def _beside_fixed_jaw(base: Pose, pose: ToolPose, grasp: Grasp) -> tuple[ToolPose, Grasp]:
+    """Return a tool pose and its grasp with the jaw that does not move beside the object, not in its middle."""
+    yaw = yaw_of(base, pose)
+    towards_object = np.array([sin(yaw), -cos(yaw), 0.0])
+    position = grasp.position - (grasp.width / 2 + JAW_ROOM) * towards_object
+    moved = tool_pose(base, position, grasp.closing)
+    moved = replace(moved, turn=moved.turn + pi * round(remainder(yaw - yaw_of(base, moved), 2 * pi) / pi))
+    x, y = np.array(grasp.aside) + grasp.width / 2 * towards_object[:2]
+    return moved, replace(grasp, position=position, aside=(float(x), float(y)))
 
 
 class ReachSampler:

@@ -57,7 +57,10 @@ FREQUENCY, RATIO = 20.0, 0.7
 LIGHT, ROTOR = 0.01, 0.1
 """A joint with an inertia below this share (``LIGHT``) of damping times time step gets a rotor with the other share."""
 STEADY = 5.0
-"""A joint that others follow has an inertia of at least this many times its damping times the time step."""
+"""A joint that others follow, or that bears the force of one jaw, has a large inertia.
+
+It is at least this many times its damping times the time step.
+"""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
@@ -123,7 +126,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     if followers and not arm.velocity:
         others = dict(zip(followers, velocity_limits(source, spec, followers, inf), strict=True))
         velocity = slowest(compiled(spec, source), joints, velocity, others)
-    _servos(spec, joints, followers)
+    _servos(spec, joints, followers, one_sided=gripper.one_sided)
     changes += _without_idle_forces(spec, {gripper.actuator}, chain)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
@@ -146,12 +149,14 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
             raise SceneError(counted, origin=source.origin, entry=ModelEntry(what))
     _refuse_outside(model, source, joints, home)
-    if tool == TOOL:
+    if tool == TOOL and not gripper.one_sided:
         face_ahead(spec, model, joints, home)
     key = f"{source.iri}#{name}" + ("" if tilt is None else f"#{tilt}")
     _prepared[key] = spec
     note_changes(key, changes)
-    motion = FingerMotion(gripper.rate, gripper.settling, gripper.open_joints, gripper.faces, gripper.sweep)
+    motion = FingerMotion(
+        gripper.rate, gripper.settling, gripper.open_joints, gripper.faces, gripper.sweep, gripper.one_sided
+    )
     set_finger_motion(key, motion)
     limits = (float(model.jnt_actfrcrange[model.joint(joint).id, 1]) for joint in joints)
     return RobotModel(
@@ -193,11 +198,11 @@ def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
     return joints
 
 
-def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> None:
+def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...], *, one_sided: bool) -> None:
     """Replace the motor or velocity servo of each joint without a position servo by a position servo.
 
     A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too. Followers
-    are not driven.
+    are not driven. With a ``one_sided`` gripper, a light arm bears the force of the jaw that moves.
     """
     driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
     for joint in followers:
@@ -214,8 +219,9 @@ def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> N
             spec.delete(actuator)
         sliding = SLIDING if spec.joint(joint).type == mujoco.mjtJoint.mjJNT_SLIDE else 1.0
         inertia, least = inertias[joint], DAMPING * sliding
-        if joint in leaders:
-            # The engine solves ties without the damping of servos: a light joint would shake. Real drives have rotors.
+        if joint in leaders or one_sided:
+            # The engine solves ties and contacts without the damping of servos: a light joint would give way or shake.
+            # Real drives have rotors.
             rotor = max(0.0, STIFFNESS * sliding * (STEADY * 2 * RATIO * TIMESTEP) ** 2 - inertia)
             spec.joint(joint).armature += rotor
             inertia, least = inertia + rotor, 0.0

@@ -47,7 +47,8 @@ def tool_of(spec: Any, source: ModelSource, stated: str, gripper: FoundGripper, 
         is_cup = gripper.kind is GripperKind.SUCTION
         if axes[:, 2] @ ahead >= OUTWARDS:
             kept, ahead = axes[:, 2], axes[:, 2]
-            if is_cup or abs(axes[:, 1] @ across) >= ALIGNED:
+            along = float(axes[:, 1] @ across)
+            if is_cup or (along if gripper.one_sided else abs(along)) >= ALIGNED:
                 return stated
     across = across - (across @ ahead) * ahead
     across /= np.linalg.norm(across)

@@ -1,0 +1,109 @@
+"""Grippers on which one jaw moves: the other one is beside the object, and the arm bears the force."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.api import RobotModel
+from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
+from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.arm_kinematics import arm_of
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.reaching import approaches
+from robbdd_tools.world.robot_files import prepared_robot, robot_from
+from world import strangers
+from world.scene_instances import instance, link
+from world.worlds import BIN, BIN_WS, CUBE, OTHER_BIN, SCENE, pick_place, scenario
+
+ARM = "env:own"
+
+
+def source(folder: Path, text: str = strangers.DESK) -> ModelSource:
+    (folder / "desk.urdf").write_text(text, encoding="utf-8")
+    origin = Origin(str(folder / "cell.scenex"), 3, 7)
+    return ModelSource("x:arm", "urdf", "file", "desk.urdf", bodies=(("x:g.foot", "base"),), origin=origin)
+
+
+def picking(folder: Path, yaw: float) -> Execution:
+    """Return the execution in which the arm moves a turned cube into a low bin; both are near the arm."""
+    turn = (cos(yaw / 2), 0.0, 0.0, sin(yaw / 2))
+    names = {CUBE: "cube", BIN: "tray", OTHER_BIN: "bin"}
+    things = [
+        Realisation(one, (ModelSource(f"x:{name}", "mjcf", "catalog", name, bodies=((f"x:g.{name}", "b"),)),))
+        for one, name in names.items()
+    ]
+    places = (
+        link("x:g.foot.f", (0.05, 0.0, 0.1)),
+        link("x:g.cube.f", (0.25, 0.06, 0.116), turn=turn),
+        link("x:g.tray.f", (0.25, -0.2, 0.1)),
+        link("x:g.bin.f", (0.9, 0.5, 0.1)),
+    )
+    staged = instance(*places, elements=(*things, Realisation(ARM, (source(folder),), is_agent=True)))
+    execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    scene = replace(SCENE, agents=(ARM,), objects=(CUBE, BIN, OTHER_BIN, "env:bench"))
+    return Execution(replace(scenario(scene), execution=execution), [pick_place(CUBE, BIN_WS, ARM)])
+
+
+def found(folder: Path) -> RobotModel:
+    return robot_from(source(folder), ARM)
+
+
+def test_the_jaw_is_the_gripper_and_the_other_one_carries_the_tool(tmp_path: Path) -> None:
+    robot = found(tmp_path)
+    assert robot.joints == ("pan", "lift", "elbow", "pitch", "roll")
+    assert robot.gripper_actuator == "grip"
+    assert finger_motion(robot).one_sided
+    assert 0.032 < robot.stroke < 0.05
+    spec = prepared_robot(robot.mjcf)
+    assert spec is not None
+    model: Any = spec.compile()
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    axes = data.site(robot.tool_site).xmat.reshape(3, 3)
+    gripper = data.body("gripper").xmat.reshape(3, 3)
+    assert axes[:, 2] == pytest.approx(gripper[:, 0], abs=1e-6)
+    assert axes[:, 1] == pytest.approx(gripper[:, 1], abs=1e-6)
+    beside = (data.site(robot.tool_site).xpos - data.body("gripper").xpos) @ gripper
+    assert beside[1] == pytest.approx(-0.008, abs=1e-3), "the surface of the jaw that does not move"
+
+
+@pytest.mark.parametrize("name", ["moving_jaw", "wrist_3"])
+def test_a_last_link_that_turns_like_a_wrist_is_no_jaw(tmp_path: Path, name: str) -> None:
+    """A flange may have the word gripper in its name, too."""
+    text = strangers.DESK.replace("moving_jaw", name).replace('name="grip"', 'name="joint_6"')
+    text = text.replace('lower="-0.2" upper="1.6"', 'lower="-2.8" upper="2.8"')
+    with pytest.raises(SceneError, match="has no gripper"):
+        robot_from(source(tmp_path, text), ARM)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("yaw", [0.0, 0.7, 2.0])
+def test_an_object_is_gripped_beside_the_fixed_jaw_and_its_middle_is_put_at_the_place(
+    tmp_path: Path, yaw: float
+) -> None:
+    run = picking(tmp_path, yaw)
+    simulation = run.simulation
+    assert run.run_behaviour(0), run.trace.remark
+    offset = simulation.pose(CUBE)[0][:2] - simulation.pose(BIN)[0][:2]
+    assert np.abs(offset).max() < 0.06
+    assert simulation.pose(CUBE)[0][2] == pytest.approx(0.12, abs=0.01)
+
+
+def test_the_middle_of_an_object_is_half_its_width_beside_the_tool(tmp_path: Path) -> None:
+    simulation = picking(tmp_path, 0.0).simulation
+    robot = simulation.robots[ARM]
+    cube = simulation.pose(CUBE)[0]
+    for one in approaches(simulation, robot, CUBE):
+        place, turn = arm_of(robot.model).forward(one.joints)
+        beside = cube[:2] - robot.base.position[:2] - place[:2]
+        assert beside @ turn[:2, 1] == pytest.approx(one.grasp.width / 2 + 0.003, abs=1e-3)
+        assert np.array(one.grasp.aside) == pytest.approx(one.grasp.width / 2 * turn[:2, 1], abs=1e-3)
