@@ -106,6 +106,18 @@ def test_the_fingers_of_two_actuators_are_one_gripper(tmp_path: Path) -> None:
     assert dict(finger_motion(found).open_joints) == pytest.approx({"ja": 0.035, "jb": -0.035}, abs=1e-3)
 
 
+@pytest.mark.parametrize("turn", ["180 0 0", "0 180 30"])
+def test_a_cup_points_out_of_the_arm_whichever_way_its_frame_points(tmp_path: Path, turn: str) -> None:
+    usual = arm_of(robot(tmp_path, strangers.VACUUM, name="usual.xml"))
+    text = strangers.VACUUM.replace(
+        '<body name="cup" pos="0 0 .06">', f'<body name="cup" pos="0 0 .06" euler="{turn}">'
+    )
+    turned = arm_of(robot(tmp_path, text, name="turned.xml"))
+    place, axes = turned.forward(usual.home)
+    assert place == pytest.approx(usual.forward(usual.home)[0], abs=1e-6)
+    assert axes[:, 2] == pytest.approx(usual.forward(usual.home)[1][:, 2], abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("extra", "goes"),
     [

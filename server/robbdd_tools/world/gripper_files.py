@@ -15,7 +15,7 @@ from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.finger_opening import Opening
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
-from robbdd_tools.world.hand_direction import finger_frame, jaw_frame
+from robbdd_tools.world.hand_direction import finger_frame, jaw_frame, outwards
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -292,10 +292,8 @@ class GripperReader:
         geom, palm = model.geom(face.name).id, model.body(self._palm).id
         turn = data.xmat[palm].reshape(3, 3)
         place = data.geom_xpos[geom]
-        away = place - data.xpos[palm]
-        ahead = away / np.linalg.norm(away) if np.linalg.norm(away) > 1e-3 else turn[:, 2]
         axes = data.geom_xmat[geom].reshape(3, 3)
-        axis = axes[:, 2] * np.sign(axes[:, 2] @ ahead or 1.0)
+        axis = outwards(model, data, palm, place, axes[:, 2])
         _, high = extent(model, data, str(face.name), axis)
         size = model.geom_size[geom]
         low_control, high_control = (float(value) for value in actuator.ctrlrange)

@@ -20,6 +20,8 @@ JUST_OPEN = 0.05
 """A jaw has just opened after this share of its way."""
 ALONG = np.cos(np.radians(30.0))
 """The jaws of a hand are on the axis of its joint if they are nearer than this (cosine of the angle) to it."""
+FLAT = 1e-3
+"""A frame is in the plane of a suction cup if its distance (m) from it is at most this."""
 STRAIGHT = np.cos(np.radians(10.0))
 """A direction out of the hand that is nearer than this (cosine of the angle) to an axis of the palm is that axis."""
 
@@ -99,6 +101,21 @@ def _direction_of_jaws(model: Any, data: Any, palm: int, middle: FloatArray) -> 
         if float(axis @ away) > ALONG:
             return axis
     return _straightened(away, data.xmat[palm].reshape(3, 3))
+
+
+def outwards(model: Any, data: Any, palm: int, place: FloatArray, axis: FloatArray) -> FloatArray:
+    """Return the axis of a suction cup in the sense that leads out of the arm, shape (3,).
+
+    It leads to the ``place`` (m) of the cup from the palm or, if the frame of the palm is in the plane of the cup, from
+    the nearest body before it whose frame is not.
+    """
+    body = palm
+    while body:
+        along = float((place - data.xpos[body]) @ axis)
+        if abs(along) > FLAT:
+            return axis if along > 0.0 else -axis
+        body = int(model.body_parentid[body])
+    return axis
 
 
 def _straightened(direction: FloatArray, axes: FloatArray) -> FloatArray:
