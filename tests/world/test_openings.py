@@ -170,7 +170,14 @@ def judged_at_start(made: Simulation, element: str) -> Verdict:
         (OpeningModel("upper_slide", "5 deg"), "is a slide: '5 deg' is an angle, not a length"),
         (OpeningModel("upper_slide", "5 mm", "0.005 m"), "must differ"),
         (OpeningModel("upper_slide", "19 cm"), "counts as open before it no longer counts as closed"),
-        (OpeningModel("upper_slide", "", "25 cm"), "is outside of the range of its joint"),
+        (
+            OpeningModel("upper_slide", "", "25 cm"),
+            "'open' of 'env:chest', 0.25 m, is outside of the range of its joint: 0 to 0.2 m",
+        ),
+        (
+            OpeningModel("upper_slide", "-1 cm", "15 cm"),
+            "'closed' of 'env:chest', -0.01 m, is outside of the range of its joint: 0 to 0.2 m",
+        ),
     ],
 )
 def test_data_that_do_not_fit_the_file_are_refused_with_their_place(
@@ -188,6 +195,12 @@ def test_of_several_joints_one_is_stated(tmp_path: Path) -> None:
     made = simulation(tmp_path, CHEST_XML, SCENE, OpeningModel("lower_slide", open="10 cm"))
     assert judged_at_start(made, CHEST).robustness == pytest.approx(-0.1, abs=1e-3)
     assert judged(made, "is-open", "env:bench").outcome is Outcome.UNKNOWN
+
+
+def test_the_stated_positions_of_a_joint_are_those_of_its_part(tmp_path: Path) -> None:
+    made = simulation(tmp_path, CHEST_XML, SCENE, OpeningModel("lower_slide", open="10 cm"))
+    assert judged_at_start(made, LOWER).robustness == pytest.approx(-0.1, abs=1e-3)
+    assert judged(made, "is-open", UPPER).robustness == pytest.approx(-0.18, abs=1e-3)
 
 
 @pytest.mark.parametrize(("share", "position"), [("0", 0.0), ("0.5", 0.1), ("1", 0.2)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import degrees
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.articulation import CLOSED_SHARE, OPEN_SHARE, Opening
@@ -56,7 +57,11 @@ def opening_of(
         raise SceneError(f"'{element}' counts as open before it no longer counts as closed", origin=origin)
     low, high = sorted(ends)
     if not (low <= closed <= high and low <= opened <= high):
-        raise SceneError(f"a position of '{element}' is outside of the range of its joint", origin=origin)
+        unit, factor = ("m", 1.0) if joint.kind == "slide" else ("deg", degrees(1.0))
+        which, value = ("open", opened) if low <= closed <= high else ("closed", closed)
+        span = f"{factor * low:.4g} to {factor * high:.4g} {unit}"
+        text = f"'{which}' of '{element}', {factor * value:.4g} {unit}, is outside of the range of its joint: {span}"
+        raise SceneError(text, origin=origin)
     return Opening(part, joint.kind, ends, closed, opened)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.base.articulation import Opening
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
@@ -24,7 +25,6 @@ from robbdd_tools.world.tilted_base import on_the_floor, upright_part
 from robbdd_tools.world.tilted_robots import tilted
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.articulation import Opening
     from robbdd_tools.catalog.api import ObjectModel, RobotModel
     from robbdd_tools.catalog.executable import ModelSource, Origin, Realisation, SceneInstance
     from robbdd_tools.world.frames import Transform
@@ -146,12 +146,16 @@ class Staging:
             }
             if file.model.joint is not None:
                 joints[file.joint] = (element, file.model.joint)
-            source = self._source(element)
+            source, whole = self._source(element), None
             if joints or (source is not None and source.opening is not None):
-                yield element, opening_of(element, joints, source)
+                whole = opening_of(element, joints, source)
+                yield element, whole
             for part in file.parts:
                 name, joint = self._part_name(element, part), part.model.joint
-                if joint is not None:
+                if isinstance(whole, Opening) and whole.part == name:
+                    # What the scene instance states about the joint concerns its part, too.
+                    yield name, whole
+                elif joint is not None:
                     yield name, opening_of(name, {part.joint: (name, joint)}, None)
 
     def _part(self, element: str) -> ObjectModel | None:
