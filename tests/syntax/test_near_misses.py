@@ -7,9 +7,11 @@ import pytest
 from checks.models import LINES, SETS, fixed, found, story
 from kit import MODEL
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.syntax.parse import parse_declaration
 
 IN_TRAY = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
 SINGLE = story(f"{LINES}                set var <fetch.goals>: {{ <places.bench_ws>, <places.tray_ws> }}\n", SETS)
+STORED = "Predicate (ns=t) <x> is-stored at <y>: ( <x> is located at <y> and <x> is at rest )\n"
 DOUBLE = MODEL.replace("var <fetch.part>: obj set <parts>", "var <fetch.part>: { { <parts.bolt> }, { <parts.nut> } }")
 
 
@@ -30,6 +32,27 @@ def changed(old: str, new: str) -> str:
             "<",
             "the values of 'set var' are sets: write '{ { … } }', or use 'var' if each scenario has a single value",
         ),
+        (
+            SINGLE.replace("<fetch.goals>: { <places.bench_ws>, <places.tray_ws> }", "<fetch.goals>: { set <spots> }"),
+            "set",
+            "the values of 'set var' are sets: write their elements, '{ { … } }', or 'select",
+        ),
+        (
+            SINGLE.replace("<fetch.goals>: { <places.bench_ws>, <places.tray_ws> }", "<fetch.goals>: ws set <places>"),
+            "ws set",
+            "the values of 'set var' are sets: write their elements",
+        ),
+        (
+            changed("<fetch.part>: obj set <parts>", "<fetch.part>: { obj set <parts> }"),
+            "obj set",
+            "all elements of a set are written without braces: 'var <…>: set <set>'",
+        ),
+        (
+            f"{STORED.replace('( ', '').replace(' )', '')}{MODEL}",
+            "and",
+            "a definition with 'and' needs parentheses around all of it: '( … and … )'",
+        ),
+        (f"{MODEL}task (ns=t) other\n", "task", "a declaration begins with a capital letter: 'Task'"),
         (DOUBLE, "{", "'var' takes one value in each scenario: use 'set var'"),
         (
             changed(IN_TRAY, f"{IN_TRAY}\n        and held: holds(<part> is held by <robot>, after <place-end>)"),
@@ -107,10 +130,26 @@ def test_a_near_miss_is_one_error_that_says_what_to_write(text: str, blamed: str
         changed("    var part\n    var robot\n", "    var part, robot\n"),
         changed("    var part\n", "    var part: object\n"),
         changed("Scenario bench-to-tray", "Scenario: bench-to-tray"),
+        changed("Event (ns=t)", "event (ns=t)"),
     ],
 )
 def test_a_near_miss_with_a_certain_fix_is_fixed(text: str) -> None:
     assert fixed(text, "syntax") == MODEL
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("obj <parts.bolt>", "a scene lists sets: write 'obj set <set>' or 'agn set <set>'"),
+        ("agn <arms.panda>", "a scene lists sets: write 'obj set <set>' or 'agn set <set>'"),
+        ("ws <places.tray>", "a scene lists sets and compositions: write 'ws set <set>' or 'ws comp <comp>'"),
+    ],
+)
+def test_a_single_element_in_a_scene_is_explained(entry: str, words: str) -> None:
+    text = f"scene (ns=t) cell {{ {entry} }}"
+    fault = parse_declaration("scene", text).faults[0]
+    assert fault.message == words
+    assert text[fault.span.start] == "<"
 
 
 def test_at_some_time_before_within_is_removed() -> None:

@@ -43,6 +43,7 @@ _RULE_WORDS = {
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?![\w%.])")
 _QUOTED_QUANTITY = re.compile(r"([\"'])([-+]?[\d.]+\s*(?:m/s|deg/s|deg|rad|mm|cm|ms|kg|g|m|s|N|%))\1")
 _EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
+_DECLARATIONS = frozenset({"Event", "Task", "Requirement", "Predicate", "Scenario", "User", "Behaviour"})
 _STARTS = frozenset({"import", "ns"})
 _PLACES = {
     "Given": "'Given:' must come before 'When:' or 'for all'",
@@ -174,6 +175,13 @@ def _unit_after(head: str) -> str:
 def trailing_fault(text: str, offset: int) -> SyntaxFault:
     """Return the fault of text after the end of a declaration."""
     token = _token(text, offset)
+    word = text[token.start : token.end]
+    if word in ("and", "or") and text.startswith("Predicate"):
+        return SyntaxFault(token, f"a definition with '{word}' needs parentheses around all of it: '( … {word} … )'")
+    if word.capitalize() in _DECLARATIONS - {word}:
+        written = word.capitalize()
+        fix = SyntaxFix(token, written, f"Change to '{written}'")
+        return SyntaxFault(token, f"a declaration begins with a capital letter: '{written}'", fix)
     unexpected = f"unexpected '{_shown(text, token)}' after the end of the declaration"
     return SyntaxFault(token, other_file(text, offset) or unexpected)
 

@@ -63,6 +63,25 @@ _NEAR_MISSES = (
         "{",
     ),
     NearMiss(
+        rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{?\s*\Z",
+        r"(?:(?:obj|ws|agn)\s+)?set\b",
+        "the values of 'set var' are sets: write their elements, '{ { … } }', or 'select 2 combinations from <set>'",
+    ),
+    NearMiss(
+        rf"(?<!set)\svar\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
+        r"(?:(?:obj|ws|agn)\s+)?set\b(?=\s*<)",
+        "all elements of a set are written without braces: 'var <…>: set <set>'",
+    ),
+    NearMiss(
+        r"(?<![\w\-])(?:obj|agn)\s+\Z", r"<", "a scene lists sets: write 'obj set <set>' or 'agn set <set>'", "set"
+    ),
+    NearMiss(
+        r"(?<![\w\-])ws\s+\Z",
+        r"<",
+        "a scene lists sets and compositions: write 'ws set <set>' or 'ws comp <comp>'",
+        "set",
+    ),
+    NearMiss(
         rf"(?<!set)\s(?P<var>var)\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
         r"\{",
         "'var' takes one value in each scenario: use 'set var' for a variable whose value is a set",
