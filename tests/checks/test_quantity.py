@@ -2,7 +2,7 @@
 
 import pytest
 
-from checks.models import LINES, check, found, marked, story
+from checks.models import LINES, check, fixed, found, marked, story
 from kit import TEMPLATE
 from robbdd_tools.base.diagnostic import Severity
 
@@ -27,6 +27,14 @@ def test_a_length_is_no_speed() -> None:
     check(marked(model("0.25 m"), "slower than «0.25 m»,", "quantity '0.25 m' is a length, not a speed"))
     text = model("<value>", "{ 0.25 m/s, 5 deg }")
     check(marked(text, "0.25 m/s, «5 deg» }", "quantity '5 deg' is an angle, not a speed"))
+
+
+def test_a_negative_limit_decides_nothing() -> None:
+    words = "quantity the limit '-0.25 m/s' is negative"
+    check(marked(model("-0.25 m/s"), "slower than «-0.25 m/s»,", words))
+    check(marked(model("<value>", "{ 0.25 m/s, -0.25 m/s }"), "0.25 m/s, «-0.25 m/s» }", words))
+    check(model("0 m/s"))
+    assert fixed(model("-0.25 m/s"), "quantity") == model("0.25 m/s")
 
 
 def test_a_number_needs_a_unit() -> None:

@@ -42,13 +42,15 @@ class Kind(StrEnum):
 class Slot:
     """One argument of a phrase: its name, its kinds, and the RDF property (CURIE) that carries it.
 
-    ``dimension`` is what a quantity measures, such as ``length``; empty for other kinds.
+    ``dimension`` is what a quantity measures, such as ``length``; empty for other kinds. ``unsigned`` marks a quantity
+    that is never negative: with a negative one, the predicate would be always true or never.
     """
 
     name: str
     kind: Kind
     property: str
     dimension: str = ""
+    unsigned: bool = False
 
 
 @dataclass(frozen=True, slots=True)

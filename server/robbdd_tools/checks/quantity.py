@@ -1,4 +1,4 @@
-"""``quantity``: a predicate gets a quantity of another dimension than it needs."""
+"""``quantity``: a predicate gets a quantity of another dimension than it needs, or a negative limit."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.base.quantity_units import QuantityError, read_quantity
+from robbdd_tools.base.quantity_units import QuantityError, dimension_of, read_quantity
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.chosen_elements import written_elements
-from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.finding import change, finding, related_to
 from robbdd_tools.checks.replacements import with_units
 from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.names.types import variable_key
@@ -18,7 +18,7 @@ from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.base.diagnostic import Diagnostic, Fix
     from robbdd_tools.catalog.api import Slot
     from robbdd_tools.checks.template_variants import Scenario
     from robbdd_tools.names.elements import Site
@@ -31,9 +31,8 @@ def quantity(site: Site) -> Iterator[Diagnostic]:
     """Report quantities in clauses, and values of variables in variations, that do not fit their predicate."""
     for clauses in clauses_of(site.placed.declaration):
         for slot, written in _slots(clauses):
-            problem = _problem(written.text, slot) if isinstance(written, tree.Quantity) else ""
-            if problem:
-                fixes = tuple(with_units(site, written, slot.dimension))
+            if isinstance(written, tree.Quantity) and (problem := _problem(written.text, slot)):
+                fixes = _fixes(site, written, written.text, slot)
                 yield finding(site, written, Severity.ERROR, CODE, problem, fixes=fixes)
     for scenario in scenarios(site):
         yield from _values(scenario)
@@ -57,7 +56,7 @@ def _values(scenario: Scenario) -> Iterator[Diagnostic]:
                     problem = _problem(element.name, slot)
                     if problem:
                         related = (related_to(site, ref, f"the {slot.name} that it is used for"),)
-                        fixes = tuple(with_units(scenario.site, node, slot.dimension))
+                        fixes = _fixes(scenario.site, node, element.name, slot)
                         yield finding(scenario.site, node, Severity.ERROR, CODE, problem, related, fixes)
                         break
 
@@ -73,7 +72,19 @@ def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Argument]]:
 
 def _problem(text: str, slot: Slot) -> str:
     try:
-        read_quantity(text, slot.dimension)
+        found = read_quantity(text, slot.dimension)
     except QuantityError as error:
         return str(error)
+    if found.value < 0 and slot.unsigned:
+        return (
+            f"the {slot.name} '{text}' is negative, so its clause would always have the same verdict: remove the sign"
+        )
     return ""
+
+
+def _fixes(site: Site, node: tree.Node, text: str, slot: Slot) -> tuple[Fix, ...]:
+    """Return the fix that removes the sign of a negative limit, or those that change the unit."""
+    if dimension_of(text) != slot.dimension:
+        return tuple(with_units(site, node, slot.dimension))
+    positive = text.lstrip("-")
+    return (change(site, f"Change to '{positive}'", node, positive),)

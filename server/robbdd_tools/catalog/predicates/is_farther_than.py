@@ -30,7 +30,7 @@ IS_FARTHER_THAN = Predicate(
     synonyms=("far", "far from", "away", "at least"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
-        Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),
+        Slot("distance", Kind.QUANTITY, "rbw:distance", "length", unsigned=True),
         Slot("other", Kind.ANY, "rbw:ref-other"),
     ),
     sentence='"{one}" is farther than "{distance}" from "{other}"',

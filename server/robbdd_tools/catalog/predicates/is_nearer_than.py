@@ -30,7 +30,7 @@ IS_NEARER_THAN = Predicate(
     synonyms=("near", "close", "closer", "close to", "next to", "at most"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
-        Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),
+        Slot("distance", Kind.QUANTITY, "rbw:distance", "length", unsigned=True),
         Slot("other", Kind.ANY, "rbw:ref-other"),
     ),
     sentence='"{one}" is nearer than "{distance}" to "{other}"',

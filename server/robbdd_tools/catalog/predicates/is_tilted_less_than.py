@@ -34,7 +34,7 @@ IS_TILTED_LESS_THAN = Predicate(
     synonyms=("upright", "level", "tilt", "inclined", "vertical"),
     slots=(
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
-        Slot("limit", Kind.QUANTITY, "rbw:limit", "angle"),
+        Slot("limit", Kind.QUANTITY, "rbw:limit", "angle", unsigned=True),
     ),
     sentence='"{object}" is tilted less than "{limit}"',
     unit="rad",

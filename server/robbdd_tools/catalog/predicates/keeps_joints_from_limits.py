@@ -24,7 +24,7 @@ KEEPS_JOINTS_FROM_LIMITS = Predicate(
     synonyms=("joint limits", "joint", "joints"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
-        Slot("share", Kind.QUANTITY, "rbw:share", "ratio"),
+        Slot("share", Kind.QUANTITY, "rbw:share", "ratio", unsigned=True),
     ),
     sentence='"{agent}" keeps its joints "{share}" from their limits',
     unit="%",

@@ -32,7 +32,7 @@ MOVES_SLOWER_THAN = Predicate(
     synonyms=("speed", "velocity", "slow", "slowly", "fast", "faster"),
     slots=(
         Slot("agent", Kind.AGENT, "bdd:ref-agent"),
-        Slot("limit", Kind.QUANTITY, "rbw:limit", "speed"),
+        Slot("limit", Kind.QUANTITY, "rbw:limit", "speed", unsigned=True),
     ),
     sentence='"{agent}" moves slower than "{limit}"',
     unit="m/s",

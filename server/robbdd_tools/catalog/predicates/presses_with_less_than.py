@@ -25,7 +25,7 @@ PRESSES_WITH_LESS_THAN = Predicate(
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
         Slot("other", Kind.ANY, "rbw:ref-other"),
-        Slot("limit", Kind.QUANTITY, "rbw:limit", "force"),
+        Slot("limit", Kind.QUANTITY, "rbw:limit", "force", unsigned=True),
     ),
     sentence='"{one}" presses "{other}" with less than "{limit}"',
     unit="N",

@@ -35,7 +35,7 @@ STAYS_NEAR_LINE = Predicate(
     synonyms=("follows", "path", "straight line", "trajectory"),
     slots=(
         Slot("one", Kind.ANY, "rbw:ref-one"),
-        Slot("distance", Kind.QUANTITY, "rbw:distance", "length"),
+        Slot("distance", Kind.QUANTITY, "rbw:distance", "length", unsigned=True),
         Slot("origin", Kind.ANY, "rbw:ref-origin"),
         Slot("destination", Kind.ANY, "rbw:ref-destination"),
     ),

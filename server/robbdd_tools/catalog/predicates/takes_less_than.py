@@ -33,7 +33,7 @@ TAKES_LESS_THAN = Predicate(
     phrase="it takes less than #limit",
     rdf_type="rbw:TakesLessThanPredicate",
     synonyms=("lasts", "duration", "takes"),
-    slots=(Slot("limit", Kind.QUANTITY, "rbw:limit", "time"),),
+    slots=(Slot("limit", Kind.QUANTITY, "rbw:limit", "time", unsigned=True),),
     sentence='it takes less than "{limit}"',
     unit="s",
     doc="The time from one event until another one is shorter than a limit, such as 12 s.",
