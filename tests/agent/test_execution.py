@@ -216,6 +216,13 @@ def test_an_execution_that_takes_too_long_is_stopped() -> None:
     assert trace.end == pytest.approx(1.0, abs=TICK)
 
 
+def test_a_window_before_an_event_that_is_longer_than_the_time_limit_is_named() -> None:
+    trace = to_the_end(execution([pick_place()], timing=Timing(lead=3.0, timeout=1.0)))
+    cause = "as a clause is about 3 s before an event: its 'timeout' must be longer than that"
+    assert trace.remark == f"the execution was stopped after 1 s of simulated time, {cause}"
+    assert "t:pick-start" not in names(trace)
+
+
 @pytest.mark.parametrize(
     ("call", "remark"),
     [

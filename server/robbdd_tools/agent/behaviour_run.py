@@ -142,7 +142,10 @@ class BehaviourRun:
             return
         if self.simulation.ticks >= self._last:
             self.finished = True
-            reason = f"the execution was stopped after {self._timing.timeout:g} s of simulated time"
+            lead, timeout = self._timing.lead, self._timing.timeout
+            reason = f"the execution was stopped after {timeout:g} s of simulated time"
+            if lead >= timeout:
+                reason += f", as a clause is about {lead:g} s before an event: its 'timeout' must be longer than that"
             self.cut_short = unknown(reason, Cause.TIME_LIMIT)
             self._note(reason)
 
