@@ -193,3 +193,26 @@ def test_units_of_others_are_converted(old: str, new: str, found: str, written: 
     assert fault.message.endswith(f"'{written}'")
     assert written in fixed(text, fault)
     assert faults(fixed(text, fault)) == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "found", "written"),
+    [
+        ("bdd", "const set (ns=t) limits { 600 mm/s, 1 m/s }", "mm/s", "0.6 m/s"),
+        ("bdd", "const set (ns=t) limits { 1 m/s, 5 km/h }", "km/h", "1.38889 m/s"),
+        ("scene", "obj set (ns=t) parts { object nut { mass: 2 kilograms }, object bolt }", "kilograms", "2 kg"),
+        ("scene", "obj set (ns=t) parts { object nut { wait: 2 min colour: red } }", "min", "120 s"),
+    ],
+)
+def test_units_of_others_in_values_are_converted(kind: str, text: str, found: str, written: str) -> None:
+    (fault,) = parse_declaration(kind, text).faults
+    assert text[fault.span.start : fault.span.end] == found
+    assert fault.message == f"'{found}' is not a unit of the language: write '{written}'"
+    assert parse_declaration(kind, fixed(text, fault)).faults == ()
+
+
+def test_an_unknown_unit_of_a_property_is_explained() -> None:
+    text = "obj set (ns=t) parts { object nut { mass: 2 lb } }"
+    (fault,) = parse_declaration("scene", text).faults
+    assert text[fault.span.start : fault.span.end] == "lb"
+    assert fault.message.startswith("'lb' is neither a unit nor a property with a value: the units are m cm mm ")

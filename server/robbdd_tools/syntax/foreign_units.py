@@ -7,6 +7,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.quantity_units import UNITS
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 
 if TYPE_CHECKING:
@@ -38,7 +39,10 @@ _NUMBER = r"(?P<number>[-+]?(?:\d+(?:\.\d*)?|\.\d+))"
 _UNIT = r"(?P<unit>[^\W\d_]+(?:/[^\W\d_]+)?|°)(?![\w\-/])"
 _QUANTITY = re.compile(rf"{_NUMBER}\s*{_UNIT}")
 _TIME = re.compile(rf"{_NUMBER}\s*\Z")
+_PROPERTY = re.compile(rf":\s*{_NUMBER}[ \t]*{_UNIT}\s*\Z")
 _TIME_UNIT = re.compile(_UNIT)
+_AFTER_VALUES = frozenset({"|", ","})
+"""What may follow a value in a table or in a list."""
 LONGEST = 40
 """Maximum number of characters from a number to its unit."""
 
@@ -47,12 +51,25 @@ def foreign_unit(text: str, rejected: Rejected) -> SyntaxFault | None:
     """Return the fault of a unit that the language does not have; ``None`` if the parser stopped elsewhere."""
     if "QuantityLiteral" in rejected.expected.rules:
         found = _QUANTITY.match(text, rejected.offset)
-        known = None if found is None else _UNITS.get(found["unit"])
-        if found is None or known is None:
+        if found is None or found["unit"] not in _UNITS:
             return None
-        written = f"{_converted(found['number'], known[1])} {known[0]}"
-        message = f"'{found['unit']}' is not a unit of the language: write '{written}'"
-        return SyntaxFault(Span(*found.span("unit")), message, _change(Span(*found.span()), written))
+        return _not_a_unit(found["number"], found["unit"], found.start(), found.start("unit"))
+    if rejected.expected.literals & _AFTER_VALUES:
+        number = _TIME.search(text, max(0, rejected.offset - LONGEST), rejected.offset)
+        unit = _TIME_UNIT.match(text, rejected.offset)
+        if number is not None and unit is not None and unit["unit"] in _UNITS:
+            return _not_a_unit(number["number"], unit["unit"], number.start(), unit.start())
+    if ":" in rejected.expected.literals:
+        head = text[max(0, rejected.offset - LONGEST) : rejected.offset]
+        found = _PROPERTY.search(head)
+        if found is None:
+            return None
+        shift = rejected.offset - len(head)
+        start, unit = found.start("number") + shift, found["unit"]
+        if unit in _UNITS:
+            return _not_a_unit(found["number"], unit, start, found.start("unit") + shift)
+        message = f"'{unit}' is neither a unit nor a property with a value: the units are {' '.join(UNITS)}"
+        return SyntaxFault(Span(found.start("unit") + shift, found.end("unit") + shift), message)
     if "seconds" in rejected.expected.literals:
         number = _TIME.search(text, max(0, rejected.offset - LONGEST), rejected.offset)
         unit = _TIME_UNIT.match(text, rejected.offset)
@@ -63,6 +80,14 @@ def foreign_unit(text: str, rejected: Rejected) -> SyntaxFault | None:
         message = f"write the time in 'seconds': '{written}'"
         return SyntaxFault(Span(*unit.span()), message, _change(Span(number.start(), unit.end()), written))
     return None
+
+
+def _not_a_unit(number: str, unit: str, start: int, place: int) -> SyntaxFault:
+    """Return the fault of a number at ``start`` with a unit at ``place``."""
+    known, size = _UNITS[unit]
+    written = f"{_converted(number, size)} {known}"
+    message = f"'{unit}' is not a unit of the language: write '{written}'"
+    return SyntaxFault(Span(place, place + len(unit)), message, _change(Span(start, place + len(unit)), written))
 
 
 def _change(span: Span, written: str) -> SyntaxFix:
