@@ -338,6 +338,16 @@ NEVER = MJCF.replace('range="0 0.04"', 'range="0.03 0.04"').replace('ctrlrange="
             FACES,
             "has faces that never meet: 0.080 m between its faces at 0.04; 0.060 m between its faces at 0.03",
         ),
+        (
+            MJCF.replace('name="elbow" axis="0 1 0" range="-2.8 2.8"', 'name="elbow" axis="0 1 0" range="2.8 -2.8"'),
+            None,
+            "the joint 'elbow' in arm.xml has the limits 2.8 to -2.8: swap them",
+        ),
+        (
+            strangers.GANTRY.replace('lower="-0.7" upper="0.7"', 'lower="0.7" upper="-0.7"'),
+            None,
+            "the joint 'y' in arm.urdf has the limits 0.7 to -0.7: swap them",
+        ),
         (MJCF, ArmModel(home=(0.0, 9.0, 0.0, 0.0, 0.0)), "the home position 9 of the joint 'shoulder' is outside its"),
         (MJCF.replace('<body name="foot">', '<body name="foot"><freejoint/>'), None, "has a free joint 'joint0'"),
         (strangers.GANTRY.replace("visual>", "collision>"), None, "the collision mesh 'package://gantry_description/"),

@@ -68,7 +68,18 @@ def load(source: ModelSource) -> Any:
         raise SceneError(f"the model file {path} cannot be read: {words}", origin=source.origin) from error
     # Links fixed to others keep their names: the tool or a body of the scene may refer to them.
     spec.compiler.fusestatic = False
+    _refuse_reversed(spec, source)
     return spec
+
+
+def _refuse_reversed(spec: Any, source: ModelSource) -> None:
+    """Refuse limits whose ends are reversed, which the engine takes for none. Raises ``SceneError``."""
+    for joint in spec.joints:
+        low, high = (float(end) for end in joint.range)
+        is_off = joint.limited == mujoco.mjtLimited.mjLIMITED_FALSE and source.format != "urdf"
+        if low > high and not is_off:
+            text = f"the joint '{joint.name}' in {source.name} has the limits {low:g} to {high:g}: swap them"
+            raise SceneError(text, origin=source.origin)
 
 
 @cache
