@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, sin
+from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +21,12 @@ from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.reaching import approaches
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 from world import strangers
+from world.arms_of_others import FOLDER
 from world.scene_instances import instance, link
 from world.worlds import BIN, BIN_WS, CUBE, OTHER_BIN, SCENE, pick_place, scenario
 
 ARM = "env:own"
+SO_100 = FOLDER / "mani_skill/assets/robots/so100/so100.urdf"
 
 
 def source(folder: Path, text: str = strangers.DESK) -> ModelSource:
@@ -33,8 +35,8 @@ def source(folder: Path, text: str = strangers.DESK) -> ModelSource:
     return ModelSource("x:arm", "urdf", "file", "desk.urdf", bodies=(("x:g.foot", "base"),), origin=origin)
 
 
-def picking(folder: Path, yaw: float) -> Execution:
-    """Return the execution in which the arm moves a turned cube into a low bin; both are near the arm."""
+def picking(arm: ModelSource, yaw: float, foot: float = 0.0) -> Execution:
+    """Return the execution in which an arm moves a cube onto a tray near it; ``yaw`` and ``foot`` turn cube and arm."""
     turn = (cos(yaw / 2), 0.0, 0.0, sin(yaw / 2))
     names = {CUBE: "cube", BIN: "tray", OTHER_BIN: "bin"}
     things = [
@@ -42,12 +44,12 @@ def picking(folder: Path, yaw: float) -> Execution:
         for one, name in names.items()
     ]
     places = (
-        link("x:g.foot.f", (0.05, 0.0, 0.1)),
+        link("x:g.foot.f", (0.05, 0.0, 0.1), turn=(cos(foot / 2), 0.0, 0.0, sin(foot / 2))),
         link("x:g.cube.f", (0.25, 0.06, 0.116), turn=turn),
         link("x:g.tray.f", (0.25, -0.2, 0.1)),
         link("x:g.bin.f", (0.9, 0.5, 0.1)),
     )
-    staged = instance(*places, elements=(*things, Realisation(ARM, (source(folder),), is_agent=True)))
+    staged = instance(*places, elements=(*things, Realisation(ARM, (arm,), is_agent=True)))
     execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
     scene = replace(SCENE, agents=(ARM,), objects=(CUBE, BIN, OTHER_BIN, "env:bench"))
     return Execution(replace(scenario(scene), execution=execution), [pick_place(CUBE, BIN_WS, ARM)])
@@ -90,7 +92,7 @@ def test_a_last_link_that_turns_like_a_wrist_is_no_jaw(tmp_path: Path, name: str
 def test_an_object_is_gripped_beside_the_fixed_jaw_and_its_middle_is_put_at_the_place(
     tmp_path: Path, yaw: float
 ) -> None:
-    run = picking(tmp_path, yaw)
+    run = picking(source(tmp_path), yaw)
     simulation = run.simulation
     assert run.run_behaviour(0), run.trace.remark
     offset = simulation.pose(CUBE)[0][:2] - simulation.pose(BIN)[0][:2]
@@ -99,7 +101,7 @@ def test_an_object_is_gripped_beside_the_fixed_jaw_and_its_middle_is_put_at_the_
 
 
 def test_the_middle_of_an_object_is_half_its_width_beside_the_tool(tmp_path: Path) -> None:
-    simulation = picking(tmp_path, 0.0).simulation
+    simulation = picking(source(tmp_path), 0.0).simulation
     robot = simulation.robots[ARM]
     cube = simulation.pose(CUBE)[0]
     for one in approaches(simulation, robot, CUBE):
@@ -107,3 +109,15 @@ def test_the_middle_of_an_object_is_half_its_width_beside_the_tool(tmp_path: Pat
         beside = cube[:2] - robot.base.position[:2] - place[:2]
         assert beside @ turn[:2, 1] == pytest.approx(one.grasp.width / 2 + 0.003, abs=1e-3)
         assert np.array(one.grasp.aside) == pytest.approx(one.grasp.width / 2 * turn[:2, 1], abs=1e-3)
+
+
+@pytest.mark.physics
+@pytest.mark.nightly
+@pytest.mark.skipif(not SO_100.is_file(), reason="the arms of others are not here: make arms")
+@pytest.mark.parametrize("yaw", [0.0, 0.7, 2.0])
+def test_the_so_100_as_shipped_puts_a_cube_onto_a_tray(yaw: float) -> None:
+    """At zero, it looks along its −y axis."""
+    arm = ModelSource("x:arm", "urdf", "file", str(SO_100), bodies=(("x:g.foot", "Base"),))
+    run = picking(arm, yaw, foot=pi / 2)
+    assert run.run_behaviour(0), run.trace.remark
+    assert np.abs(run.simulation.pose(CUBE)[0][:2] - run.simulation.pose(BIN)[0][:2]).max() < 0.06
