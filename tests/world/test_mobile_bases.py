@@ -13,6 +13,7 @@ import pytest
 
 from robbdd_tools.agent.behaviour_calls import Call
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
@@ -22,6 +23,7 @@ from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.placement import FLOOR
 from robbdd_tools.world.reaching import NONE, ReachSampler
 from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.staging import Staging
 from robbdd_tools.world.tilted_base import Tilt
 from world import strangers
 from world.test_staging import instance, link
@@ -176,6 +178,20 @@ def test_wheels_and_joints_of_the_base_are_not_those_of_the_arm(tmp_path: Path) 
 def test_a_base_that_drives_cannot_be_tilted(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="drives on the floor, so its base cannot be tilted"):
         robot_from(own(tmp_path, strangers.ROVER).models[0], ROVER, Tilt((0.0, 1.0, 0.0, 0.0), 1.0))
+
+
+def robot_at(height: float, rover: Realisation) -> RobotModel | None:
+    place = link("x:g.base.foot", (0.0, -0.5, height))
+    return Staging(instance(place, elements=(rover,)), 1).robot(ROVER)
+
+
+def test_a_base_that_drives_is_not_placed_in_the_air(tmp_path: Path) -> None:
+    usual, other = catalog(ROVER, "mobile-panda", "base"), own(tmp_path, strangers.ROVER)
+    for rover, height, gap in ((usual, -0.6, "0.05"), (usual, 0.1, "0.75"), (other, -0.4, "0.2[0-9]")):
+        with pytest.raises(SceneError, match=f"drives on the floor: its lowest part is {gap} m above the floor"):
+            robot_at(height, rover)
+    assert robot_at(FLOOR, usual) is not None
+    assert robot_at(FLOOR, other) is not None
 
 
 def test_a_gantry_with_short_axes_does_not_drive(tmp_path: Path) -> None:

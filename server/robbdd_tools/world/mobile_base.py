@@ -94,6 +94,18 @@ def base_of(robot: RobotModel) -> MobileBase | None:
     return read_base(load_robot(robot).compile(), robot.joints[0])
 
 
+def lowest_point(robot: RobotModel) -> float:
+    """Return the height (m) of the lowest part of a robot above the origin of its frame, in the posture of its file."""
+    model = load_robot(robot).compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    axes = data.geom_xmat.reshape(-1, 3, 3)[:, 2]
+    boxes = model.geom_aabb.reshape(-1, 6)
+    middles = data.geom_xpos[:, 2] + np.einsum("ij,ij->i", axes, boxes[:, :3])
+    heights = np.einsum("ij,ij->i", np.abs(axes), boxes[:, 3:])
+    return float(np.min(middles - heights))
+
+
 def drive_by_servos(child: Any, base: MobileBase) -> None:
     """Give the joints of a base servos with its force limits, in place of the actuators of its file.
 

@@ -16,11 +16,12 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.frames import Frames
 from robbdd_tools.world.gripper_faces import refuse_smooth_faces
+from robbdd_tools.world.mobile_base import base_of, lowest_point
 from robbdd_tools.world.model_files import FromFile, MovingPart, load, object_from, usable
 from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name, shape_name
 from robbdd_tools.world.pose import Pose
-from robbdd_tools.world.robot_files import prepared_robot, robot_from
+from robbdd_tools.world.robot_files import FLOOR, prepared_robot, robot_from
 from robbdd_tools.world.tilted_base import on_the_floor, upright_part
 from robbdd_tools.world.tilted_robots import tilted
 
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource, Origin, Realisation, SceneInstance
     from robbdd_tools.world.frames import Transform
 
+TOUCHING, CLEARANCE = 0.01, 0.15
+"""A mobile base is on the floor if its lowest part is at most this far above it (m): files may leave out wheels."""
 UPRIGHT = 1e-6
 PAIR = ("condim", "friction", "solref", "solreffriction", "solimp", "margin", "gap")
 
@@ -200,10 +203,13 @@ class Staging:
             found = load_catalog().robots.get(chosen.name)
             if found is None:
                 raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
-            return tilted(found, tilt, chosen)
+            turned = tilted(found, tilt, chosen)
+            _refuse_above_floor(turned, placed, chosen)
+            return turned
         found = robot_from(chosen, element, tilt or (None if placed is None else on_the_floor(placed)))
         if not any(element in (friction.first, friction.second) for friction in self.frictions):
             refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
+        _refuse_above_floor(found, placed, chosen)
         return found
 
     def pose(self, element: str, attempt: int = 0) -> Pose | None:
@@ -283,3 +289,13 @@ def _pose(transform: Transform) -> Pose:
     if np.hypot(x, y) < UPRIGHT:
         return Pose(place, 2 * atan2(z, w))
     return Pose(place, atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)), (w, x, y, z))
+
+
+def _refuse_above_floor(robot: RobotModel, placed: Pose | None, source: ModelSource) -> None:
+    """Refuse a mobile base that is above the floor: it would drive through the air. Raises ``SceneError``."""
+    if placed is None or robot.mount[2] != FLOOR or base_of(robot) is None:
+        return
+    gap = placed.position[2] + lowest_point(robot) - FLOOR
+    if gap > (TOUCHING if source.kind == "catalog" else CLEARANCE):
+        where = f"its lowest part is {gap:.2f} m above the floor, which is at z = {FLOOR:g} m"
+        raise SceneError(f"'{robot.name}' drives on the floor: {where}", origin=source.origin)
