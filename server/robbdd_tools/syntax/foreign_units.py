@@ -42,7 +42,7 @@ _TIME = re.compile(rf"{_NUMBER}\s*\Z")
 _PROPERTY = re.compile(rf":\s*{_NUMBER}[ \t]*{_UNIT}\s*\Z")
 _TIME_UNIT = re.compile(_UNIT)
 _AFTER_VALUES = frozenset({"|", ","})
-"""What may follow a value in a table or in a list."""
+"""The signs after a value in a table or in a list."""
 LONGEST = 40
 """Maximum number of characters from a number to its unit."""
 
