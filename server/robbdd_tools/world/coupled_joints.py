@@ -90,11 +90,6 @@ def followers_among(spec: Any, joints: Sequence[str]) -> tuple[str, ...]:
     return tuple(joint for joint in joints if ties.get(joint) in joints)
 
 
-def leaders_of(spec: Any, followers: Sequence[str]) -> frozenset[str]:
-    """Return the joints that followers of an arm follow."""
-    return frozenset(str(one.name2) for one in _ties(spec) if one.name1 in followers)
-
-
 def refuse_uncoupled(spec: Any, source: ModelSource, bodies: Sequence[Any], joints: Sequence[str]) -> None:
     """Refuse the ties of an arm's joints or bodies that are not followed here. Raises ``SceneError``."""
     ties = {str(one.name1): str(one.name2) for one in _ties(spec)}

@@ -15,7 +15,6 @@ from robbdd_tools.world.arm_chain import chain_to_palm
 from robbdd_tools.world.coupled_joints import (
     coupled_by_name,
     followers_among,
-    leaders_of,
     refuse_uncoupled,
     slowest,
     stiffen,
@@ -48,19 +47,14 @@ if TYPE_CHECKING:
 
 SPEED = 1.0
 """Speed limit (rad/s, m/s) of an arm's joints if neither the file nor the model has one."""
-STIFFNESS, DAMPING = 2000.0, 100.0
-"""Smallest gains (N m/rad, N m s/rad) of added servos."""
+STIFFNESS = 2000.0
+"""Smallest stiffness (N m/rad) of added servos."""
 SLIDING = 10.0
-"""For a sliding joint, the smallest gains (N/m, N s/m) are this many times as large."""
+"""For a sliding joint, the smallest stiffness (N/m) is this many times as large."""
 FREQUENCY, RATIO = 20.0, 0.7
 """Natural frequency (rad/s) and damping ratio of servos that are added to joints with a large inertia."""
-LIGHT, ROTOR = 0.01, 0.1
-"""A joint with an inertia below this share (``LIGHT``) of damping times time step gets a rotor with the other share."""
 STEADY = 5.0
-"""A joint that others follow, or that bears the force of one jaw, has a large inertia.
-
-It is at least this many times its damping times the time step.
-"""
+"""A joint with an added servo has an inertia of at least this many times its damping times the time step."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
@@ -126,7 +120,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     if followers and not arm.velocity:
         others = dict(zip(followers, velocity_limits(source, spec, followers, inf), strict=True))
         velocity = slowest(compiled(spec, source), joints, velocity, others)
-    _servos(spec, joints, followers, one_sided=gripper.one_sided)
+    _servos(spec, joints, followers)
     changes += _without_idle_forces(spec, {gripper.actuator}, chain)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
@@ -198,17 +192,17 @@ def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
     return joints
 
 
-def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...], *, one_sided: bool) -> None:
+def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> None:
     """Replace the motor or velocity servo of each joint without a position servo by a position servo.
 
     A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too. Followers
-    are not driven. With a ``one_sided`` gripper, a light arm bears the force of the jaw that moves.
+    are not driven.
     """
     driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
     for joint in followers:
         if joint in driven:
             spec.delete(driven[joint])
-    inertias, leaders = _inertias(spec, joints), leaders_of(spec, followers)
+    inertias = _inertias(spec, joints)
     for joint in joints:
         actuator = driven.get(joint)
         if actuator is not None and _is_position_servo(actuator):
@@ -218,22 +212,17 @@ def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...], *, o
             limit = _largest_force(actuator)
             spec.delete(actuator)
         sliding = SLIDING if spec.joint(joint).type == mujoco.mjtJoint.mjJNT_SLIDE else 1.0
-        inertia, least = inertias[joint], DAMPING * sliding
-        if joint in leaders or one_sided:
-            # The engine solves ties and contacts without the damping of servos: a light joint would give way or shake.
-            # Real drives have rotors.
-            rotor = max(0.0, STIFFNESS * sliding * (STEADY * 2 * RATIO * TIMESTEP) ** 2 - inertia)
-            spec.joint(joint).armature += rotor
-            inertia, least = inertia + rotor, 0.0
+        # The engine solves ties and contacts without the damping of servos: a light joint would give way or shake. Real
+        # drives have rotors.
+        least = STIFFNESS * sliding * (STEADY * 2 * RATIO * TIMESTEP) ** 2
+        rotor = max(0.0, least - inertias[joint])
+        spec.joint(joint).armature += rotor
+        inertia = inertias[joint] + rotor
         stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertia)
-        damping = max(least, 2 * RATIO * (stiffness * inertia) ** 0.5)
         servo = spec.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-        servo.set_to_position(kp=stiffness, kv=damping)
+        servo.set_to_position(kp=stiffness, kv=2 * RATIO * (stiffness * inertia) ** 0.5)
         if limit > 0:
             servo.forcerange, servo.forcelimited = [-limit, limit], True
-            if inertia < LIGHT * damping * TIMESTEP:
-                # At its force limit, a servo of so light a joint would hit back and forth. Real drives have rotors.
-                spec.joint(joint).armature += ROTOR * damping * TIMESTEP
 
 
 def _without_idle_forces(spec: Any, used: Collection[str], chain: list[Any]) -> list[str]:
