@@ -103,8 +103,7 @@ URDF = "".join(
     ]
 )
 
-SHEARS = MJCF
-"""The same arm with straight fingers of 85 mm that rotate about their roots, 16 mm apart there."""
+_shears = MJCF
 for _old, _new in (
     ('<joint type="slide" range="0 0.04" armature="0.1" damping="10"/>', '<joint armature="0.002" damping="0.2"/>'),
     ('size="0.009 0.004 0.015" mass="0.01"', 'size="0.009 0.004 0.0425" pos="0 0 0.0425" mass="0.02"'),
@@ -123,5 +122,7 @@ for _old, _new in (
         'kp="40" kv="1" forcerange="-2 2" ctrlrange="-0.3 0.6"',
     ),
 ):
-    assert _old in SHEARS
-    SHEARS = SHEARS.replace(_old, _new)
+    assert _old in _shears
+    _shears = _shears.replace(_old, _new)
+SHEARS = _shears
+"""The same arm with straight fingers of 85 mm that rotate about their roots, 16 mm apart there."""
