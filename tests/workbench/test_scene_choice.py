@@ -202,6 +202,25 @@ def test_results_state_the_instance_and_later_commands_keep_it(tidy: Path, capsy
     assert "cell.scenex was changed since the run" in capsys.readouterr().err
 
 
+@pytest.mark.physics
+def test_a_run_names_the_bodies_of_the_scene_through_which_everything_passes(
+    tidy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    curtain = '<body name="curtain" pos="0 0 2"><geom size=".1" contype="0" conaffinity="0"/></body>'
+    Path("room.xml").write_text(f"<mujoco><worldbody>{curtain}</worldbody></mujoco>", encoding="utf-8")
+    edit(
+        "cell.scenex",
+        "    scene: <cell>\n",
+        "    scene: <cell>\n    model room_model as mjcf { sys path = 'room.xml' }\n",
+    )
+    assert main(["run", str(tidy), "--scenex", "cell.scenex", "--repeat", "2", "--no-store"]) == 0
+    said = capsys.readouterr()
+    notes = [line for line in (said.out + said.err).splitlines() if "passes through" in line]
+    assert notes == [
+        "warning: no collision shapes in the model of the whole scene, so everything passes through: curtain"
+    ]
+
+
 BOTH = ("env:blue_ws", "env:red_ws")
 GRAPH = """@prefix env: <https://example.org/robbdd/rightbin/environment/> .
 @prefix rbw: <https://robbdd.org/metamodels/workbench#> .

@@ -133,9 +133,10 @@ CUP_ONLY = re.sub(r'<body name="lf".*?</body><body name="rf".*?</body>', _CUP, _
 VACUUM = CUP_ONLY.replace("</actuator>", '<adhesion body="cup" ctrlrange="0 1" gain="30"/></actuator>')
 
 
-def _link(name: str, mass: float, shapes: str = "") -> str:
-    inertia = '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>'
-    return f'<link name="{name}"><inertial><mass value="{mass}"/>{inertia}</inertial>{shapes}</link>'
+def _link(name: str, mass: float, shapes: str = "", at: str = "0 0 0", moment: float = 0.01) -> str:
+    inertia = f'<inertia ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"/>'
+    inertial = f'<inertial><origin xyz="{at}"/><mass value="{mass}"/>{inertia}</inertial>'
+    return f'<link name="{name}">{inertial}{shapes}</link>'
 
 
 def _box(size: str, at: str = "0 0 0") -> str:
@@ -253,9 +254,7 @@ ROVER = SIX.replace(_STANDING, _PLATFORM)
 
 
 def _light(name: str, mass: float, size: str, at: str) -> str:
-    inertia = f'<inertia ixx="{mass / 1000}" iyy="{mass / 1000}" izz="{mass / 1000}" ixy="0" ixz="0" iyz="0"/>'
-    inertial = f'<inertial><origin xyz="{at}"/><mass value="{mass}"/>{inertia}</inertial>'
-    return f'<link name="{name}">{inertial}{_box(size, at)}</link>'
+    return _link(name, mass, _box(size, at), at, mass / 1000)
 
 
 def _servo(name: str, ends: str, axis: str, at: str, low: float, high: float) -> str:

@@ -15,7 +15,7 @@ from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.robot_files import prepared_robot
 from world import strangers
 from world.arms import MJCF
-from world.test_any_arm import ARM, picking, robot
+from world.arms_from_files import ARM, picking, robot
 
 DRIVEN = ("j1", "j2", "j3", "j4")
 

@@ -82,6 +82,13 @@ def test_a_part_beside_the_middle_is_taken_after_the_middle() -> None:
     assert all(leg.aside == pytest.approx((-0.036, 0.0)) for leg in of_leg)
 
 
+def test_what_fits_without_play_is_said_to_need_it() -> None:
+    with pytest.raises(
+        BehaviourError, match=r"wide, the gripper opens 0\.033 m; with 4 mm of play, that is too little"
+    ):
+        finger_grasps("cube", OBJECTS["cube"], AT, UPRIGHT, 0.033)
+
+
 def test_what_is_too_wide_in_its_middle_is_taken_at_a_wall() -> None:
     walls = [((0.1, 0.003, 0.04), (0.0, side * 0.1, 0.04)) for side in (-1, 1)]
     found = finger_grasps("crate", made_of(((0.1, 0.1, 0.003), (0.0, 0.0, 0.0)), *walls), AT, UPRIGHT, STROKE)

@@ -11,7 +11,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.robot_files import prepared_robot
 from world import strangers
-from world.test_any_arm import robot
+from world.arms_from_files import robot
 
 HOME = "".join(
     f'<joint name="{name}" value="{value}"/>' for name, value in {"x": 0.3, "y": 0.1, "z": 0.2, "turn": 0.5}.items()

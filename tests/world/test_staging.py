@@ -206,6 +206,22 @@ def test_an_object_that_a_constraint_of_its_file_holds_is_refused(tmp_path: Path
         world(SceneInstance("x:cell", (whole,)))
 
 
+@pytest.mark.parametrize("tie", ['joint1="left" joint2="right"', 'joint1="left"'], ids=["to another", "where it is"])
+def test_parts_of_an_object_that_its_file_couples_are_refused(tmp_path: Path, tie: str) -> None:
+    doors = "".join(
+        f'<body name="{side}_door" pos="{x} 0 .1"><joint name="{side}" axis="0 0 1" range="0 1.5"/>'
+        '<geom type="box" size=".02 .005 .08" mass=".1"/></body>'
+        for side, x in (("left", -0.05), ("right", 0.05))
+    )
+    cabinet = f'<body name="cabinet"><geom type="box" size=".1 .1 .01"/>{doors}</body>'
+    text = f"<mujoco><worldbody>{cabinet}</worldbody><equality><joint {tie}/></equality></mujoco>"
+    staged = instance(
+        link("x:g.bin.mid", (0.5, 0.3, 0.11)), elements=(file(tmp_path, BIN, text, ("x:g.bin", "cabinet")),)
+    )
+    with pytest.raises(SceneError, match=r"the joint constraint in thing\.xml acts on 'left_door', and cannot"):
+        world(staged)
+
+
 def test_an_inactive_constraint_of_a_file_holds_nothing(tmp_path: Path) -> None:
     text = BLOCK.replace('name="block"', 'name="cube1" pos=".4 .2 .5"')
     weld = '<equality><weld body1="cube1" active="false"/></equality>'

@@ -19,8 +19,8 @@ from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.tilted_base import rotation_of, upright_part
 from world import strangers
 from world.arms import MJCF
+from world.arms_from_files import ARM, source
 from world.scene_instances import instance, link
-from world.test_any_arm import ARM, source
 from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
 
 HALF = 0.5**0.5

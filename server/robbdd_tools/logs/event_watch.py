@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.logs.log_contents import UnreadableLog
 
@@ -99,7 +99,6 @@ def _value(signal: EventSignal, message: Any) -> tuple[Any, Any]:
 
 def _fields(value: Any) -> Mapping[str, Any]:
     if isinstance(value, Mapping):
-        # A JSON message is untyped: neither its names nor its values have types that pyright knows.
-        return {str(name): one for name, one in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+        return {str(name): one for name, one in cast("Mapping[Any, Any]", value).items()}
     names = [name for name in getattr(value, "__dataclass_fields__", {}) if not name.startswith("_")]
     return {name: getattr(value, name) for name in names}

@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
-from typing import IO, Any, Protocol
+from typing import IO, Any, Protocol, cast
 
 from robbdd_tools.base.external_systems import command_words
 from robbdd_tools.base.interpreter import inherited_paths
@@ -205,7 +205,8 @@ def _library(name: str) -> Any:
 def _checked(message: Any) -> dict[str, Any]:
     if not isinstance(message, dict):
         raise SystemFailed(f"sent {message!r:.60} instead of a map")
-    return message  # pyright: ignore[reportUnknownVariableType]  the keys are checked where they are read
+    # The keys are checked where they are read.
+    return cast("dict[str, Any]", message)
 
 
 def _late(seconds: float) -> str:
