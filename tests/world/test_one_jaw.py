@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from math import cos, pi, sin
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.api import RobotModel
-from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
+from robbdd_tools.catalog.executable import ArmModel, Implementation, ModelSource, Origin, Realisation
 from robbdd_tools.protocol.specs import ExecutionSpec
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.engine import mujoco
@@ -24,6 +23,9 @@ from world import strangers
 from world.arms_of_others import FOLDER
 from world.scene_instances import instance, link
 from world.worlds import BIN, BIN_WS, CUBE, OTHER_BIN, SCENE, pick_place, scenario
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, RobotModel
 
 ARM = "env:own"
 SO_100 = FOLDER / "mani_skill/assets/robots/so100/so100.urdf"
@@ -59,23 +61,53 @@ def found(folder: Path) -> RobotModel:
     return robot_from(source(folder), ARM)
 
 
+def tool_in_hand(robot: RobotModel) -> tuple[FloatArray, FloatArray]:
+    """Return the place (m) of the tool and its axes, as columns, in the frame of the hand."""
+    spec = prepared_robot(robot.mjcf)
+    assert spec is not None
+    model: Any = spec.compile()
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    hand, tool = data.body("gripper"), data.site(robot.tool_site)
+    turn: FloatArray = hand.xmat.reshape(3, 3).T
+    return turn @ (tool.xpos - hand.xpos), turn @ tool.xmat.reshape(3, 3)
+
+
 def test_the_jaw_is_the_gripper_and_the_other_one_carries_the_tool(tmp_path: Path) -> None:
     robot = found(tmp_path)
     assert robot.joints == ("pan", "lift", "elbow", "pitch", "roll")
     assert robot.gripper_actuator == "grip"
     assert finger_motion(robot).one_sided
     assert 0.032 < robot.stroke < 0.05
-    spec = prepared_robot(robot.mjcf)
-    assert spec is not None
-    model: Any = spec.compile()
-    data: Any = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    axes = data.site(robot.tool_site).xmat.reshape(3, 3)
-    gripper = data.body("gripper").xmat.reshape(3, 3)
-    assert axes[:, 2] == pytest.approx(gripper[:, 0], abs=1e-6)
-    assert axes[:, 1] == pytest.approx(gripper[:, 1], abs=1e-6)
-    beside = (data.site(robot.tool_site).xpos - data.body("gripper").xpos) @ gripper
-    assert beside[1] == pytest.approx(-0.008, abs=1e-3), "the surface of the jaw that does not move"
+    place, axes = tool_in_hand(robot)
+    assert axes[:, 1:] == pytest.approx(np.eye(3)[:, [1, 0]], abs=1e-6)
+    assert place[1] == pytest.approx(-0.008, abs=1e-3), "the surface of the jaw that does not move"
+
+
+def test_stated_faces_may_be_in_either_order(tmp_path: Path) -> None:
+    expected = found(tmp_path)
+    for pads in (("fixed_jaw", "moving_jaw"), ("moving_jaw", "fixed_jaw")):
+        robot = robot_from(replace(source(tmp_path), arm=ArmModel(pads=pads)), ARM)
+        assert (robot.joints, robot.stroke) == (expected.joints, pytest.approx(expected.stroke, abs=1e-3))
+        assert finger_motion(robot).one_sided
+        assert tool_in_hand(robot)[1][:, 1:] == pytest.approx(np.eye(3)[:, [1, 0]], abs=1e-6)
+
+
+def test_the_jaw_closes_at_the_speed_of_one_finger(tmp_path: Path) -> None:
+    """Over the whole way, from 1.6 to −0.2 rad, it moves by the stroke."""
+    robot = found(tmp_path)
+    assert finger_motion(robot).rate * robot.stroke == pytest.approx(1.8, rel=0.02)
+
+
+@pytest.mark.parametrize("turn", [f"0 {pi / 2} 0", f"{pi} {-pi / 2} 0"])
+def test_a_stated_tool_gets_the_y_axis_towards_the_jaw_that_moves(tmp_path: Path, turn: str) -> None:
+    tip = (
+        '<link name="tip"/><joint name="end" type="fixed"><parent link="gripper"/><child link="tip"/>'
+        f'<origin xyz="0.1 0 0" rpy="{turn}"/></joint>'
+    )
+    text = strangers.DESK.replace("</robot>", f"{tip}</robot>")
+    robot = robot_from(replace(source(tmp_path, text), arm=ArmModel(tool="tip")), ARM)
+    assert tool_in_hand(robot)[1][:, 1:] == pytest.approx(np.eye(3)[:, [1, 0]], abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ["moving_jaw", "wrist_3"])
