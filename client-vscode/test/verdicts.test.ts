@@ -41,28 +41,23 @@ test("*holds* is drawn after its clause, other verdicts before it, but after the
       ["✗ at-goal", 2, 22, "after"],
       ["✗ 0 of 4 hold", 1, 27, "after"],
       ["? because of carry", 1, 27, "after"],
-      ["? unknown", 1, 4, "before"],
+      ["? unknown: it timed out", 1, 4, "before"],
     ],
   );
   assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", "", "", "", ""]);
 });
 
-for (const [columns, words] of [[60, "? unknown"], [61, "? unknown it timed out"]] as const) {
-  test(`in a line of ${columns} columns the verdict before the clause is "${words}"`, () => {
-    const document = { lineAt: () => ({ text: "x".repeat(columns), firstNonWhitespaceCharacterIndex: 0 }) } as unknown as TextDocument;
-    const data = { verdict: "unknown", stale: false, reason: "it timed out" };
-    assert.deepEqual(marksOfHints(document, [hint(0, columns, "? unknown", data)]).map((mark) => mark.words), [words]);
+for (const [place, columns] of [["short", 27], ["long", 120]] as const) {
+  test(`the reason is before a clause in a ${place} line, since the editor may draw none after it`, () => {
+    const document = { lineAt: () => ({ text: "x".repeat(columns), firstNonWhitespaceCharacterIndex: 4 }) } as unknown as TextDocument;
+    const shown = (data: object, words = "? unknown") => marksOfHints(document, [hint(0, columns, words, data)]).map(({ words }) => words);
+    const unknown = { verdict: "unknown", stale: false };
+    assert.deepEqual(shown({ ...unknown, reason: "it timed out" }), ["? unknown: it timed out"]);
+    assert.deepEqual(shown({ ...unknown, reason: `it timed out${" again".repeat(20)}` }), [`? unknown: it timed out${" again".repeat(9)} agai…`]);
+    assert.deepEqual(shown(unknown), ["? unknown"]);
+    assert.deepEqual(shown({ ...unknown, reason: "it timed out" }, "✗"), ["✗ it timed out"]);
   });
 }
-
-test("the reason is before a clause in a long line, after which it would be out of sight", () => {
-  const long = `    at-goal: holds(${"<thing> is located at <goal>, ".repeat(3)})`;
-  const document = { lineAt: () => ({ text: long, firstNonWhitespaceCharacterIndex: 4 }) } as unknown as TextDocument;
-  const shown = (data: object) => marksOfHints(document, [hint(0, long.length, "? unknown", data)]).map(({ words }) => words);
-  const unknown = { verdict: "unknown", stale: false };
-  assert.deepEqual(shown({ ...unknown, reason: "it timed out" }), ["? unknown it timed out"]);
-  assert.deepEqual(shown(unknown), ["? unknown"]);
-});
 
 const WIDE = `    at-goal: holds(${"x".repeat(80)})`;
 

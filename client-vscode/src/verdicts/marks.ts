@@ -17,8 +17,11 @@ export interface Mark extends Appearance {
   readonly tooltip: string;
 }
 
-/** Columns of a line after which a window of usual size (1,360 px) cuts the reason short by an ellipsis. */
+/** Columns of a line beside which there is room for the words of another line in a window of usual size (1,360 px). */
 const LONG_LINE = 60;
+
+/** Characters of a reason before a clause: the clause has to stay in sight, too. */
+const REASON = 72;
 
 /** Columns of a line after which the first words of a verdict are out of sight in such a window. */
 const WIDE_LINE = 95;
@@ -34,8 +37,8 @@ export function appearanceOf(shown: object): Appearance | undefined {
 }
 
 /**
- * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause: after it, the editor draws
- * the failure of the test over everything else. A verdict that was re-judged is drawn after its clause, because
+ * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause, with its reason: after it, the
+ * editor draws the failure of the test over everything else, but not always, and only the part that has room. A verdict that was re-judged is drawn after its clause, because
  * someone is typing there; if it were out of sight there, it is drawn at a line next to it. Any other verdict that would be
  * out of sight after its clause is drawn before it.
  */
@@ -53,12 +56,12 @@ export function marksOfHints(document: Text, hints: readonly Hint[]): Mark[] {
       return [nextToWideLine(document, mark) ?? { ...mark, character: first, side: "before" }];
     }
     if (character > WIDE_LINE) {
-      return [{ ...mark, words: appearance.verdict === "holds" ? words : besideTest(mark, text), character: first, side: "before" }];
+      return [{ ...mark, words: appearance.verdict === "holds" ? words : withReason(mark), character: first, side: "before" }];
     }
     // The editor draws nothing at the row of a table, nor at a consequence, whose test has no message.
     return appearance.verdict === "holds" || appearance.rejudged || appearance.consequence || text[first] === "|"
       ? [{ ...mark, character, side: "after" }]
-      : [{ ...mark, words: besideTest(mark, text), character: first, side: "before" }];
+      : [{ ...mark, words: withReason(mark), character: first, side: "before" }];
   });
 }
 
@@ -73,9 +76,13 @@ function nextToWideLine(document: Text, mark: Omit<Mark, "character" | "side">):
   return host && { ...mark, words: `${host.arrow} ${mark.words}`, line: host.line, character: end(host.line), side: "after" };
 }
 
-/** The words before a clause: the editor draws the reason after it, which in a long line is out of sight. */
-function besideTest({ words, reason }: Pick<Mark, "words" | "reason">, text: string): string {
-  return reason === "" || text.length <= LONG_LINE ? words : `${words} ${reason}`;
+function withReason({ words, reason }: Pick<Mark, "words" | "reason">): string {
+  if (reason === "") {
+    return words;
+  }
+  const short = reason.length > REASON ? `${reason.slice(0, REASON - 1).trimEnd()}…` : reason;
+  const isSign = words.length === 1;
+  return `${words}${isSign ? "" : ":"} ${short}`;
 }
 
 /** The pass rates, at the ends of the lines below their lenses, or at the beginnings of wide lines. */

@@ -42,7 +42,7 @@ export const FAILURES = {
   "policy-raises": { policy: "raises", line: /placed:/, cause: /^KeyError: 'gaol' \(acting\.py, line \d+\)/ },
   "behaviour-raises": { behaviour: "Raises", line: /Behaviour/, cause: /^KeyError: 'gaol' \(acting\.py, line \d+\)/ },
   "not-a-number": { behaviour: "Diverges", line: /Behaviour/, cause: /^ValueError: joints must be 7 finite numbers/ },
-  "no-model": { instance: "broken_sim", line: /Behaviour/, cause: /^there is no model file .*missing\.xml \(bench\.scenex, line \d+\)/ },
+  "no-model": { instance: "broken_sim", line: /Behaviour/, cause: /^there is no model file .*missing\.xml \(bench\.scenex, line \d+\)/, margin: /^\? unknown: there is no model file / },
   killed: { behaviour: "Dies", line: /Behaviour/, cause: /^the process ended with signal SIGKILL/ },
   "no-event": { behaviour: "Silent", line: /placed:/, cause: /^event evt-place-end never occurred/ },
   deadline: {
@@ -56,7 +56,7 @@ export const FAILURES = {
     cause: /^violated by −\d+ mm at \d+\.\d\d s/,
     margin: /^✗ −\d+ mm at \d+\.\d\d s/,
   },
-  "no-step": { then: "'the lamp is green' after <evt-place-end>", line: /the lamp/, cause: /^no step definition for 'the lamp is green/, margin: /^\? unknown no step definition/ },
+  "no-step": { then: "'the lamp is green' after <evt-place-end>", line: /the lamp/, cause: /^no step definition for 'the lamp is green/, margin: /^\? unknown no step definition: / },
 };
 
 const CODE = `"""Behaviours and evaluators that fail, each in its own way."""
