@@ -23,6 +23,7 @@ from robbdd_tools.catalog.registry import problems_of_words
 from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, seed, wanted
 from robbdd_tools.commands.commands_of_runs import add_commands_of_runs
+from robbdd_tools.commands.cut_arguments import add_cut
 from robbdd_tools.commands.evidence_arguments import add_evidence
 from robbdd_tools.commands.falsify_arguments import add_falsify
 from robbdd_tools.commands.lost_output import output_may_be_lost
@@ -185,6 +186,7 @@ def argument_parser() -> argparse.ArgumentParser:
     )
     new.add_argument("--template", metavar="NAME", default="pickplace", help="default: pickplace")
     new.set_defaults(command=_new)
+    add_cut(commands.add_parser("cut", help="cut hollow meshes into convex pieces, with which they collide"))
     doctor = commands.add_parser("doctor", help="test each part of the installation, and say how to fix it")
     doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
     doctor.add_argument("--json", action="store_true", help="print one JSON object")

@@ -14,6 +14,8 @@ from robbdd_tools.base.srdf import srdf_files
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 """Attributes of MJCF and URDF that name folders to search for files."""
 
+PIECES = ".pieces.obj"
+"""End of the name of a file with the convex pieces of a mesh, beside the mesh."""
 
 Read = Callable[[Path], str | bytes]
 """Returns the XML of a file; raises ``UnreadableFile``."""
@@ -31,6 +33,11 @@ def model_files(path: Path, read: Read = load_bytes) -> Iterator[Path]:
         yield current
         waiting += reversed(list(_named(current, read)))
     yield from (one for one in srdf_files(path) if one not in seen)
+
+
+def pieces_beside(mesh: Path) -> Path:
+    """Return the path of the file with the convex pieces of a mesh file, whether it exists or not."""
+    return mesh.with_name(mesh.name + PIECES)
 
 
 def unusable(path: Path) -> Unreadable | None:
@@ -51,4 +58,4 @@ def _named(path: Path, read: Read) -> Iterator[Path]:
     for name in (element.get("file") or element.get("filename") for element in root.iter()):
         if name:
             found = (place / name.removeprefix("file://") for place in dict.fromkeys(places))
-            yield from (one for one in found if os.path.lexists(one))
+            yield from (one for place in found for one in (place, pieces_beside(place)) if os.path.lexists(one))

@@ -18,7 +18,7 @@ from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
-from robbdd_tools.world.mjcf_files import read_mjcf
+from robbdd_tools.world.model_meshes import read_model
 from robbdd_tools.world.moving_parts import (
     handle_of,
     is_free,
@@ -29,7 +29,7 @@ from robbdd_tools.world.moving_parts import (
     rigid_root,
 )
 from robbdd_tools.world.solids import inertia_in, shape_in
-from robbdd_tools.world.urdf_files import is_urdf, read_urdf, speeds
+from robbdd_tools.world.urdf_files import speeds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -84,7 +84,7 @@ def _refuse_reversed(spec: Any, source: ModelSource) -> None:
 
 @cache
 def _read(path: str) -> Any:
-    return read_urdf(Path(path)) if is_urdf(Path(path)) else read_mjcf(Path(path))
+    return read_model(Path(path))
 
 
 def _read_made(path: Path) -> Any:

@@ -132,7 +132,7 @@ def _use_mesh(path: Path, link: ElementTree.Element, shape: ElementTree.Element,
     begin = f"the collision mesh '{name}' of the link '{link.get('name')}'"
     if found is None:
         raise ValueError(f"{begin} is not on this machine; looked for {', '.join(map(str, mesh_places(path, name)))}")
-    address = f"{_address(found)}.stl"
+    address = f"{mesh_address(found)}.stl"
     try:
         converted[address] = as_stl(found)
     except UnreadableMesh as error:
@@ -145,13 +145,13 @@ def _serve_all(root: ElementTree.Element, converted: dict[str, bytes]) -> None:
     for mesh in root.iter("mesh"):
         name = mesh.get("filename", "")
         if name not in converted:
-            address = f"{_address(Path(name))}{Path(name).suffix.lower()}"
+            address = f"{mesh_address(Path(name))}{Path(name).suffix.lower()}"
             with open_regular(Path(name)) as file:
                 converted[address] = file.read()
             mesh.set("filename", address)
 
 
-def _address(path: Path) -> str:
+def mesh_address(path: Path) -> str:
     """Return a name for a mesh file; the engine names a mesh after its file, so each file has one name."""
     return f"{CONVERTED}-{sha256(str(path).encode()).hexdigest()[:12]}"
 

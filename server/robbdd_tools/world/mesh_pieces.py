@@ -1,0 +1,159 @@
+"""Convex pieces of a mesh, in a file beside it: a whole mesh collides as its convex hull."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.base.files import open_regular
+from robbdd_tools.base.model_includes import pieces_beside
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from robbdd_tools.catalog.api import FloatArray
+
+HEADER = "# Convex pieces of the mesh with the SHA-256 digest "
+HIDDEN = 3
+"""Group of geoms that pictures leave out."""
+SPATIAL = 3
+"""Coordinates of a corner."""
+HOLLOW = 1.3
+"""A mesh counts as hollow if its convex hull has at least so many times its volume."""
+_GEOM = (
+    *("pos", "quat", "contype", "conaffinity", "condim", "priority", "friction", "solmix", "solref", "solimp"),
+    *("margin", "gap", "rgba"),
+)
+"""Attributes that a piece shares with its geom."""
+_TURN = ("type", "axisangle", "euler", "xyaxes", "zaxis")
+
+
+def obj_of(mesh: bytes, pieces: Sequence[tuple[FloatArray, FloatArray]]) -> str:
+    """Return the pieces of a mesh file as an OBJ file with an object each.
+
+    A piece has corners (shape (n, 3), in the unit of the mesh) and faces (shape (m, 3), numbers of corners from 0).
+    """
+    lines, before = [f"{HEADER}{sha256(mesh).hexdigest()}", "# Written by 'robbdd cut'."], 1
+    for number, (corners, faces) in enumerate(pieces, start=1):
+        lines.append(f"o piece{number}")
+        lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners]
+        lines += [f"f {a + before} {b + before} {c + before}" for a, b, c in faces]
+        before += len(corners)
+    return "\n".join((*lines, ""))
+
+
+def pieces_of(mesh: Path) -> tuple[FloatArray, ...]:
+    """Return the corners (shape (n, 3), in the unit of the mesh) of its pieces; nothing if it has not been cut.
+
+    Raises ``ValueError`` if the pieces cannot be read or are those of another version of the mesh.
+    """
+    file = pieces_beside(mesh)
+    if not file.is_file():
+        return ()
+    lines = _content(file).decode("utf-8", "replace").splitlines()
+    if lines[:1] != [f"{HEADER}{sha256(_content(mesh)).hexdigest()}"]:
+        raise ValueError(
+            f"{file.name} has the pieces of another version of {mesh.name}: 'robbdd cut {mesh.name}' cuts it"
+        )
+    try:
+        found = tuple(map(np.array, _corners(lines)))
+    except ValueError:
+        found = ()
+    if not found or any(piece.ndim != 2 or piece.shape[1] != SPATIAL for piece in found):
+        raise ValueError(f"{file.name} cannot be read: remove it, or cut {mesh.name} again")
+    return found
+
+
+def is_current(mesh: Path) -> bool:
+    """Return whether a mesh has been cut and has not changed since."""
+    try:
+        return bool(pieces_of(mesh))
+    except ValueError:
+        return False
+
+
+def _content(path: Path) -> bytes:
+    with open_regular(path) as file:
+        return file.read()
+
+
+def _corners(lines: Iterable[str]) -> Iterator[list[list[float]]]:
+    piece: list[list[float]] = []
+    for line in lines:
+        kind, *words = line.split() or [""]
+        if kind == "o" and piece:
+            yield piece
+            piece = []
+        elif kind == "v":
+            piece.append([float(word) for word in words])
+    if piece:
+        yield piece
+
+
+def use_pieces(spec: Any, files: Mapping[str, Path]) -> None:
+    """Let the colliding geoms of cut meshes collide as their pieces. Raises ``ValueError``.
+
+    ``files`` are the files of the meshes by their names in ``spec``. The geoms keep their mass and their looks; those
+    that the file names in a contact pair stay as they are.
+    """
+    paired = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
+    cut: dict[str, tuple[str, ...]] = {}
+    for geom in [geom for body in spec.bodies for geom in body.geoms if _collides_as_mesh(geom)]:
+        name = str(geom.meshname)
+        if name not in files or (geom.name and geom.name in paired):
+            continue
+        if name not in cut:
+            cut[name] = tuple(_add_meshes(spec, spec.mesh(name), pieces_of(files[name])))
+        for number, piece in enumerate(cut[name], start=1):
+            _add_geom(geom, piece, number)
+        if cut[name]:
+            geom.contype = geom.conaffinity = 0
+
+
+def _collides_as_mesh(geom: Any) -> bool:
+    return geom.type == mujoco.mjtGeom.mjGEOM_MESH and bool(geom.contype or geom.conaffinity)
+
+
+def _add_meshes(spec: Any, mesh: Any, pieces: Iterable[FloatArray]) -> Iterator[str]:
+    for number, corners in enumerate(pieces, start=1):
+        name = f"{mesh.name} piece {number}"
+        spec.add_mesh(name=name, uservert=corners.ravel(), scale=mesh.scale, refpos=mesh.refpos, refquat=mesh.refquat)
+        yield name
+
+
+def _add_geom(geom: Any, mesh: str, number: int) -> None:
+    made = geom.parent.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, mass=0.0, group=HIDDEN)
+    if geom.name:
+        made.name = f"{geom.name} piece {number}"
+    for attribute in _GEOM:
+        setattr(made, attribute, getattr(geom, attribute))
+    for attribute in _TURN:
+        setattr(made.alt, attribute, getattr(geom.alt, attribute))
+    if geom.frame is not None:
+        made.set_frame(geom.frame)
+
+
+def hollowness(model: Any, mesh: int) -> float | None:
+    """Return how many times a mesh's volume its convex hull has; ``None`` if its faces do not enclose a volume."""
+    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    vertices = np.asarray(model.mesh_vert[first : first + count], dtype=float)
+    start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    inner = volume(vertices, model.mesh_face[start : start + faces])
+    graph = int(model.mesh_graphadr[mesh])
+    if graph < 0 or inner <= 0.0:
+        return None
+    corners, sides = int(model.mesh_graph[graph]), int(model.mesh_graph[graph + 1])
+    # After the counts: an address and a number for each corner, the edges, then three corners for each face.
+    hull = graph + 2 + 3 * corners + 3 * sides
+    outer = volume(vertices, model.mesh_graph[hull : hull + 3 * sides].reshape(-1, 3))
+    return outer / inner if outer > 0.0 else None
+
+
+def volume(vertices: FloatArray, faces: Any) -> float:
+    """Return the volume that faces enclose: ``vertices`` has shape (n, 3), ``faces`` shape (m, 3), numbers from 0."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    return abs(float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum())) / 6

@@ -1,0 +1,63 @@
+"""The files of a model's meshes, and which of the meshes are hollow."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+from robbdd_tools.base.model_includes import model_files
+from robbdd_tools.base.model_paths import mesh_places
+from robbdd_tools.base.source_texts import source_xml
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.mesh_pieces import HOLLOW, hollowness, use_pieces
+from robbdd_tools.world.mjcf_files import read_mjcf
+from robbdd_tools.world.urdf_files import is_urdf, mesh_address, read_urdf
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+def read_model(path: Path) -> Any:
+    """Return the engine's editable description of a model file, in which cut meshes collide as their pieces.
+
+    Raises ``ValueError`` and ``OSError``.
+    """
+    spec, files = read_whole(path)
+    use_pieces(spec, files)
+    return spec
+
+
+def read_whole(path: Path) -> tuple[Any, dict[str, Path]]:
+    """Return the description of a model file with whole meshes, and the files of the meshes by their names in it.
+
+    Raises ``ValueError`` and ``OSError``.
+    """
+    if is_urdf(path):
+        spec, root = read_urdf(path), ElementTree.fromstring(source_xml(path))
+        addresses = (mesh.get("filename", "") for mesh in root.iter("mesh"))
+        places = (next((one for one in mesh_places(path, name) if one.is_file()), None) for name in addresses)
+        known = {name: place for place in places if place is not None for name in (str(place), mesh_address(place))}
+        found = {str(mesh.name): known.get(mesh.file) or known.get(Path(mesh.file).stem) for mesh in spec.meshes}
+    else:
+        spec, named = read_mjcf(path), list(model_files(path, source_xml))
+        found = {str(mesh.name): _ending(named, str(mesh.file)) for mesh in spec.meshes}
+    return spec, {name: file for name, file in found.items() if file is not None}
+
+
+def _ending(files: Iterable[Path], address: str) -> Path | None:
+    """Return the first file whose path ends with an address; the folders of meshes are settings of the compiler."""
+    parts = tuple(part for part in Path(address).parts if part not in ("..", "."))
+    return next((one for one in files if parts and one.parts[-len(parts) :] == parts), None)
+
+
+def hollow_meshes(model: Any) -> dict[str, float]:
+    """Return the meshes of a compiled model that collide although they are hollow, with how hollow they are."""
+    colliding = {
+        int(model.geom_dataid[geom])
+        for geom in range(model.ngeom)
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+        and model.geom_contype[geom] | model.geom_conaffinity[geom]
+    }
+    shares = {str(model.mesh(mesh).name): hollowness(model, mesh) for mesh in sorted(colliding)}
+    return {name: share for name, share in shares.items() if share is not None and share >= HOLLOW}
