@@ -83,6 +83,7 @@ COMMANDS = (
     "runs --store runs",
     "export latest --ros2 -o bag --store runs",
     "new out/bench",
+    "cut five.xml",
     "doctor",
     "dap",
 )

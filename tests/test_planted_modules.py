@@ -20,6 +20,7 @@ from planting_kit import HostileFolder, importable_names, write_ranged_study
 from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.isolation import EXPOSED
+from world.hollow import write_tote
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 COMMANDS = (
@@ -52,6 +53,7 @@ COMMANDS = (
     "export latest --ros2 -o out/bag --store out/runs",
     "import event.ttl -o out/imported.bdd",
     "new out/bench",
+    "cut tote.obj",
     "doctor",
     "dap",
 )
@@ -117,6 +119,7 @@ def test_no_command_imports_a_planted_module(
     (hostile.models / "event.ttl").write_text(AN_EVENT, encoding="utf-8")
     (hostile.models / "one.study").write_text(A_STUDY, encoding="utf-8")
     write_ranged_study(hostile.models)
+    write_tote(hostile.models / "tote.obj")
     start = hostile.models if inside else hostile.root
     assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in commands:

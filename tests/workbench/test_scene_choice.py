@@ -27,6 +27,7 @@ from robbdd_tools.workbench.named_files import NotAModel
 from robbdd_tools.workbench.plan import Plan
 from robbdd_tools.workbench.rerun import failed_in
 from robbdd_tools.workbench.scene_choice import SceneChoiceError
+from world.hollow import HULL, write_tote
 
 WORDS = "executed in the scene instance 'cell_sim' of cell.scenex"
 INSTANCE = "https://example.org/robbdd/ownrobot/simulation/cell_sim"
@@ -218,6 +219,25 @@ def test_a_run_names_the_bodies_of_the_scene_through_which_everything_passes(
     notes = [line for line in (said.out + said.err).splitlines() if "passes through" in line]
     assert notes == [
         "warning: no collision shapes in the model of the whole scene, so everything passes through: curtain"
+    ]
+
+
+@pytest.mark.physics
+def test_a_run_names_hollow_meshes(tidy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_tote(Path("tote.obj"))
+    mesh = '<asset><mesh name="cabinet" file="tote.obj"/></asset>'
+    shape = '<worldbody><geom type="mesh" mesh="cabinet" pos="0 0 3"/></worldbody>'
+    Path("room.xml").write_text(f"<mujoco>{mesh}{shape}</mujoco>", encoding="utf-8")
+    edit(
+        "cell.scenex",
+        "    scene: <cell>\n",
+        "    scene: <cell>\n    model room_model as mjcf { sys path = 'room.xml' }\n",
+    )
+    assert main(["run", str(tidy), "--scenex", "cell.scenex", "--no-store"]) == 0
+    said = capsys.readouterr()
+    assert [line for line in (said.out + said.err).splitlines() if "hollow" in line] == [
+        f"warning: a hollow mesh, which collides as its convex hull with {HULL:.1f} times its volume; "
+        "'robbdd cut MODEL' cuts it into convex pieces: cabinet"
     ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import cos, pi, sin
 from pathlib import Path
+from shutil import copyfile, copytree
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.mesh_cutting import cut_mesh
 from robbdd_tools.world.reaching import approaches
 from robbdd_tools.world.robot_files import prepared_robot, robot_from
 from world import strangers
@@ -141,6 +143,48 @@ def test_the_middle_of_an_object_is_half_its_width_beside_the_tool(tmp_path: Pat
         beside = cube[:2] - robot.base.position[:2] - place[:2]
         assert beside @ turn[:2, 1] == pytest.approx(one.grasp.width / 2 + 0.003, abs=1e-3)
         assert np.array(one.grasp.aside) == pytest.approx(one.grasp.width / 2 * turn[:2, 1], abs=1e-3)
+
+
+EXAMPLES = FOLDER / "cmeel.prefix/share/example-robot-data/robots"
+SO_ARM = "so_arm_description"
+
+
+@pytest.mark.physics
+@pytest.mark.nightly
+@pytest.mark.skipif(not EXAMPLES.is_dir(), reason="the arms of others are not here: make arms")
+@pytest.mark.parametrize(
+    ("urdf", "base", "foot", "jaws"),
+    [
+        (f"{SO_ARM}/urdf/so100.urdf", "base", pi / 2, ("so100/Fixed_Jaw.stl", "so100/Moving_Jaw.stl")),
+        (
+            f"{SO_ARM}/urdf/so101.urdf",
+            "base_link",
+            0.0,
+            ("so101/wrist_roll_follower_so101_v1.stl", "so101/moving_jaw_so101_v1.stl"),
+        ),
+        (
+            "z1_description/urdf/z1.urdf",
+            "link00",
+            0.0,
+            ("collision/z1_GripperStator.STL", "collision/z1_GripperMover.STL"),
+        ),
+    ],
+)
+def test_arms_whose_hollow_jaws_are_cut_put_a_cube_onto_a_tray(
+    urdf: str, base: str, foot: float, jaws: tuple[str, ...], tmp_path: Path
+) -> None:
+    robots, description = tmp_path / "example-robot-data" / "robots", urdf.partition("/")[0]
+    copytree(EXAMPLES / description, robots / description)
+    arm = ModelSource("x:arm", "urdf", "file", str(robots / urdf), bodies=(("x:g.foot", base),))
+    with pytest.raises(SceneError, match=r"no two parts that meet .* A hollow mesh collides as its convex hull"):
+        robot_from(arm, ARM)
+    for jaw in jaws:
+        cut_mesh(robots / description / "meshes" / jaw, threshold=0.05)
+    again = replace(arm, name=str((robots / urdf).with_name("cut.urdf")))
+    copyfile(robots / urdf, again.name)
+    run = picking(again, 0.7, foot)
+    assert run.run_behaviour(0), run.trace.remark
+    assert np.abs(run.simulation.pose(CUBE)[0][:2] - run.simulation.pose(BIN)[0][:2]).max() < 0.06
 
 
 @pytest.mark.physics

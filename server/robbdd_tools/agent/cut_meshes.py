@@ -14,19 +14,14 @@ FAILED = 2
 
 def find(model: Path) -> int:
     """Print the hollow collision meshes of a model."""
-    from robbdd_tools.world.model_meshes import hollow_meshes, read_whole
+    from robbdd_tools.world.model_meshes import hollow_files
 
     try:
-        spec, files = read_whole(model)
-        hollow = hollow_meshes(spec.copy().compile())
+        hollow = hollow_files(model)
     except (ValueError, OSError) as error:
         print(" ".join(str(error).split()), file=sys.stderr)
         return FAILED
-    found: dict[Path, float] = {}
-    for name, share in hollow.items():
-        if name in files:
-            found.setdefault(files[name], share)
-    for file, share in sorted(found.items()):
+    for file, share in hollow.items():
         print(f"{share:.3g}\t{file}")
     return 0
 

@@ -50,6 +50,8 @@ from robbdd_tools.traces.mcap_file import write_trace
 from robbdd_tools.user_code.calls import fault_of
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.log_views import verdict_views, views
+from robbdd_tools.world.mesh_pieces import CUT
+from robbdd_tools.world.model_meshes import hollow_scenery
 from robbdd_tools.world.viewer import NoViewer, Viewer
 
 if TYPE_CHECKING:
@@ -152,6 +154,9 @@ class ScenarioRun:
                 remarks[name] = f"simulated as '{model.name}' of the catalog, as their names say nothing more"
         for name in () if cast.staging is None else cast.staging.untouchable:
             remarks[name] = "no collision shapes in the model of the whole scene, so everything passes through"
+        hollow = {} if cast.staging is None else dict(cast.staging.hollow) | hollow_scenery(execution.simulation.model)
+        for name, share in hollow.items():
+            remarks[name] = f"a hollow mesh, which collides as its convex hull with {share:.1f} times its volume; {CUT}"
         new: dict[str, list[str]] = {}
         for name, remark in remarks.items():
             if name not in self._courses.reported:

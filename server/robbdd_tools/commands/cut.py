@@ -16,7 +16,7 @@ AGENT = "robbdd_tools.agent.cut_meshes"
 def cut(path: Path, threshold: float, *, again: bool) -> int:
     """Cut a mesh, or the hollow collision meshes of a model; return the exit code.
 
-    Meshes that have been cut are left out, unless they shall be cut ``again``.
+    Meshes that have been cut are left out, unless they are to be cut ``again``.
     """
     file = path.expanduser().absolute()
     if not file.is_file():

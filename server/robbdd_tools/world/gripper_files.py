@@ -16,6 +16,8 @@ from robbdd_tools.world.finger_opening import Opening
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
 from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
 from robbdd_tools.world.hand_direction import finger_frame, jaw_frame, outwards
+from robbdd_tools.world.mesh_pieces import CUT
+from robbdd_tools.world.model_meshes import hollow_meshes
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -165,7 +167,9 @@ class GripperReader:
         bodies = [int(model.body(body.name).id) for body in self._parts.bodies]
         faces = meeting_faces(model, bodies, states)
         if not faces:
-            raise self._parts.error("has no two parts that meet when it closes: name its pads")
+            hollow = hollow_meshes(model, bodies)
+            cut = f". A hollow mesh collides as its convex hull; {CUT}" if hollow else ""
+            raise self._parts.error(f"has no two parts that meet when it closes: name its pads{cut}")
         if self._source.format == "urdf":
             for name in (name for face in faces for name in face):
                 make_rubber(self._parts.spec.geom(name))

@@ -24,6 +24,7 @@ SPATIAL = 3
 """Coordinates of a corner."""
 HOLLOW = 1.3
 """A mesh counts as hollow if its convex hull has at least so many times its volume."""
+CUT = "'robbdd cut MODEL' cuts it into convex pieces"
 _GEOM = (
     *("pos", "quat", "contype", "conaffinity", "condim", "priority", "friction", "solmix", "solref", "solimp"),
     *("margin", "gap", "rgba"),

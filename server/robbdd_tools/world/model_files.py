@@ -18,7 +18,7 @@ from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
-from robbdd_tools.world.model_meshes import read_model
+from robbdd_tools.world.model_meshes import hollow_meshes, read_model
 from robbdd_tools.world.moving_parts import (
     handle_of,
     is_free,
@@ -162,7 +162,7 @@ class FromFile:
 
     ``geoms`` are the names of the model's shapes in the file, in their order. ``parts`` are its moving parts, each
     after the part that carries it. ``body`` and ``joint`` are the names of the object's body and of its joint, if any,
-    in the file.
+    in the file. ``hollow`` says how many times the volume of a hollow mesh its convex hull has; it is 0 without one.
     """
 
     model: ObjectModel
@@ -172,6 +172,7 @@ class FromFile:
     body: str
     joint: str
     parts: tuple[MovingPart, ...]
+    hollow: float
 
 
 def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
@@ -189,6 +190,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     moving = tuple(joint_bodies(model, body))
     own = [one for one in range(model.nbody) if rigid_root(model, one, body) is not None]
     refuse_constraints(model, own, source)
+    hollow = max(hollow_meshes(model, own).values(), default=0.0)
     sites = _sites(model, data, (body, *moving), body)
     parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
     main = _Rigid(model, data, body, body, source)
@@ -217,7 +219,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         inertia=main.inertia if free or jointed else None,
     )
     name, joint = name_of_body(model, body), joint_name(model, body) if jointed else ""
-    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts)
+    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), main.names, name, joint, parts, hollow)
 
 
 def _refuse_light(mass: float, source: ModelSource) -> None:

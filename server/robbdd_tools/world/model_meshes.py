@@ -6,16 +6,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
-from robbdd_tools.base.model_includes import model_files
+from robbdd_tools.base.model_includes import model_files, pieces_beside
 from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.file_contents import make_solid
 from robbdd_tools.world.mesh_pieces import HOLLOW, hollowness, use_pieces
 from robbdd_tools.world.mjcf_files import read_mjcf
+from robbdd_tools.world.owners import is_scenery
 from robbdd_tools.world.urdf_files import is_urdf, mesh_address, read_urdf
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
 
 def read_model(path: Path) -> Any:
@@ -51,13 +53,44 @@ def _ending(files: Iterable[Path], address: str) -> Path | None:
     return next((one for one in files if parts and one.parts[-len(parts) :] == parts), None)
 
 
-def hollow_meshes(model: Any) -> dict[str, float]:
-    """Return the meshes of a compiled model that collide although they are hollow, with how hollow they are."""
+def whole_meshes(path: Path) -> dict[Path, float]:
+    """Return the hollow collision meshes of a model file that have not been cut, with how hollow they are.
+
+    Raises ``ValueError`` and ``OSError``.
+    """
+    return {mesh: share for mesh, share in hollow_files(path).items() if not pieces_beside(mesh).is_file()}
+
+
+def hollow_files(path: Path) -> dict[Path, float]:
+    """Return the files of a model's hollow collision meshes, sorted, with how hollow they are.
+
+    Moving links without collision shapes collide as their visual ones, as in arms.
+    Raises ``ValueError`` and ``OSError``.
+    """
+    spec, files = read_whole(path)
+    spec = spec.copy()
+    make_solid(spec)
+    hollow = hollow_meshes(spec.compile())
+    return dict(sorted((files[name], share) for name, share in hollow.items() if name in files))
+
+
+def hollow_scenery(model: Any) -> dict[str, float]:
+    """Return the hollow collision meshes in the models of the whole scene, with how hollow they are."""
+    found = ((name.partition("/"), share) for name, share in hollow_meshes(model).items())
+    return {mesh: share for (owner, _, mesh), share in found if is_scenery(owner)}
+
+
+def hollow_meshes(model: Any, bodies: Container[int] | None = None) -> dict[str, float]:
+    """Return the meshes of a compiled model that collide although they are hollow, with how hollow they are.
+
+    Only those of ``bodies`` are returned if they are given.
+    """
     colliding = {
         int(model.geom_dataid[geom])
         for geom in range(model.ngeom)
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
         and model.geom_contype[geom] | model.geom_conaffinity[geom]
+        and (bodies is None or int(model.geom_bodyid[geom]) in bodies)
     }
     shares = {str(model.mesh(mesh).name): hollowness(model, mesh) for mesh in sorted(colliding)}
     return {name: share for name, share in shares.items() if share is not None and share >= HOLLOW}

@@ -34,7 +34,9 @@ from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
 from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import GripperReader
 from robbdd_tools.world.home_posture import find_home
+from robbdd_tools.world.mesh_pieces import use_pieces
 from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
+from robbdd_tools.world.model_meshes import read_whole
 from robbdd_tools.world.planar_joints import drives
 from robbdd_tools.world.srdf_semantics import apply_srdf, path_to
 from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
@@ -97,7 +99,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     arm = semantics.complete(spec, stated)
     uses_group = semantics.palm and not stated.pads and not stated.tool
     chain = path_to(spec.body(semantics.palm)) if uses_group else _chain(spec, source, arm, changes)
-    changes += make_solid(spec)
+    changes += _solid(spec, source)
     joints = _joints(source, chain)
     refuse_uncoupled(spec, source, chain, joints)
     if followers := followers_among(spec, joints):
@@ -182,6 +184,20 @@ def _chain(spec: Any, source: ModelSource, arm: ArmModel, changes: list[str]) ->
         changes.append(f"joints beside the arm, fixed: {', '.join(found.beside)}")
         fix_joints(spec, source, found.beside)
     return found.bodies
+
+
+def _solid(spec: Any, source: ModelSource) -> list[str]:
+    """Let links without collision shapes collide as their visual shapes, or as the pieces of their meshes that are cut.
+
+    Return what was changed, as lines for a report. Raises ``SceneError``.
+    """
+    changes = make_solid(spec)
+    if changes and source.kind in ("file", "ros"):
+        try:
+            use_pieces(spec, read_whole(path_of(source))[1])
+        except ValueError as error:
+            raise SceneError(f"the model {source.name} cannot be read: {error}", origin=source.origin) from error
+    return changes
 
 
 def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:

@@ -17,8 +17,10 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.mesh_pieces import CUT
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import load, path_of, velocity_limits
+from robbdd_tools.world.model_meshes import whole_meshes
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.srdf_semantics import file_of
 from robbdd_tools.world.urdf_files import impossible_inertias
@@ -47,9 +49,14 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
     if source is not None:
         yield from _semantic_description(source)
-        unusual = ", ".join(impossible_inertias(path_of(source))) if source.kind in ("file", "ros") else ""
+    if source is not None and source.kind in ("file", "ros"):
+        unusual = ", ".join(impossible_inertias(path_of(source)))
         if unusual:
             yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
+        hollow = whole_meshes(path_of(source))
+        if hollow:
+            meshes = ", ".join(f"{mesh.name} ({share:.1f} times its volume)" for mesh, share in hollow.items())
+            yield f"hollow meshes, each of which collides as its convex hull: {meshes}; {CUT}"
     yield from changes_of(robot.mjcf)
     base = base_of(robot)
     if base is not None:

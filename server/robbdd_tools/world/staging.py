@@ -87,6 +87,11 @@ class Staging:
         tops = (body for spec in self.scenery for body in spec.worldbody.bodies)
         return tuple(str(body.name) for body in tops if body.name and _is_visual(body))
 
+    @property
+    def hollow(self) -> Iterator[tuple[str, float]]:
+        """The objects with a hollow mesh, and how many times its volume its convex hull has."""
+        return ((element, file.hollow) for element, file in self._files.items() if file.hollow)
+
     def carriers_first(self, elements: Iterable[str]) -> list[str]:
         """Return elements in the order of their names, with possible moving parts of others last."""
         names = {element.rpartition(":")[2]: element for element in elements}
