@@ -212,7 +212,7 @@ def test_pieces_of_another_version_of_the_mesh_are_refused(tmp_path: Path) -> No
         load(source(path))
 
 
-@pytest.mark.parametrize("damage", ["v 1 2", "v 1 2 x", ""])
+@pytest.mark.parametrize("damage", ["v 1 2 x", "v 1 2\nf 1 1 1", "v 1 2 3\nf 1 1 9", ""])
 def test_damaged_pieces_are_refused(tmp_path: Path, damage: str) -> None:
     mesh = write_tote(tmp_path / "tote.obj")
     pieces_beside(mesh).write_text(f"{obj_of(mesh.read_bytes(), [])}o piece1\n{damage}\n")

@@ -10,6 +10,7 @@ import numpy as np
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.base.model_includes import pieces_beside
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.obj_groups import closed_groups, read_groups
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 HEADER = "# Convex pieces of the mesh with the SHA-256 digest "
 HIDDEN = 3
 """Group of geoms that pictures leave out."""
-SPATIAL = 3
-"""Coordinates of a corner."""
 HOLLOW = 1.3
 """A mesh counts as hollow if its convex hull has at least so many times its volume."""
 CUT = "'robbdd cut MODEL' cuts it into convex pieces"
@@ -48,51 +47,38 @@ def obj_of(mesh: bytes, pieces: Sequence[tuple[FloatArray, FloatArray]]) -> str:
 
 
 def pieces_of(mesh: Path) -> tuple[FloatArray, ...]:
-    """Return the corners (shape (n, 3), in the unit of the mesh) of its pieces; nothing if it has not been cut.
+    """Return the corners (shape (n, 3), in the unit of the mesh) of the pieces of a mesh; nothing if it is whole.
 
+    They are those of the file beside it, or the closed groups of an OBJ file.
     Raises ``ValueError`` if the pieces cannot be read or are those of another version of the mesh.
     """
     file = pieces_beside(mesh)
     if not file.is_file():
-        return ()
+        return _own_groups(mesh)
     lines = _content(file).decode("utf-8", "replace").splitlines()
     if lines[:1] != [f"{HEADER}{sha256(_content(mesh)).hexdigest()}"]:
         raise ValueError(
             f"{file.name} has the pieces of another version of {mesh.name}: 'robbdd cut {mesh.name}' cuts it"
         )
     try:
-        found = tuple(map(np.array, _corners(lines)))
+        found = tuple(corners[np.unique(faces)] for corners, faces in read_groups(lines))
     except ValueError:
         found = ()
-    if not found or any(piece.ndim != 2 or piece.shape[1] != SPATIAL for piece in found):
+    if not found:
         raise ValueError(f"{file.name} cannot be read: remove it, or cut {mesh.name} again")
     return found
 
 
-def is_current(mesh: Path) -> bool:
-    """Return whether a mesh has been cut and has not changed since."""
+def _own_groups(mesh: Path) -> tuple[FloatArray, ...]:
     try:
-        return bool(pieces_of(mesh))
+        return closed_groups(_content(mesh)) if mesh.suffix.lower() == ".obj" else ()
     except ValueError:
-        return False
+        return ()  # the engine says what is wrong with the file
 
 
 def _content(path: Path) -> bytes:
     with open_regular(path) as file:
         return file.read()
-
-
-def _corners(lines: Iterable[str]) -> Iterator[list[list[float]]]:
-    piece: list[list[float]] = []
-    for line in lines:
-        kind, *words = line.split() or [""]
-        if kind == "o" and piece:
-            yield piece
-            piece = []
-        elif kind == "v":
-            piece.append([float(word) for word in words])
-    if piece:
-        yield piece
 
 
 def use_pieces(spec: Any, files: Mapping[str, Path]) -> None:

@@ -11,7 +11,7 @@ from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.file_contents import make_solid
-from robbdd_tools.world.mesh_pieces import HOLLOW, hollowness, use_pieces
+from robbdd_tools.world.mesh_pieces import HOLLOW, hollowness, pieces_of, use_pieces
 from robbdd_tools.world.mjcf_files import read_mjcf
 from robbdd_tools.world.owners import is_scenery
 from robbdd_tools.world.urdf_files import is_urdf, mesh_address, read_urdf
@@ -58,11 +58,11 @@ def whole_meshes(path: Path) -> dict[Path, float]:
 
     Raises ``ValueError`` and ``OSError``.
     """
-    return {mesh: share for mesh, share in hollow_files(path).items() if not pieces_beside(mesh).is_file()}
+    return {mesh: share for mesh, share in hollow_files(path).items() if not pieces_of(mesh)}
 
 
 def hollow_files(path: Path) -> dict[Path, float]:
-    """Return the files of a model's hollow collision meshes, sorted, with how hollow they are.
+    """Return the files of a model's hollow collision meshes, sorted, with how hollow they are, also of those cut here.
 
     Moving links without collision shapes collide as their visual ones, as in arms.
     Raises ``ValueError`` and ``OSError``.
@@ -73,7 +73,8 @@ def hollow_files(path: Path) -> dict[Path, float]:
     # Only the shapes matter: masses and inertias that no body can have are no reason to fail.
     spec.compiler.balanceinertia, spec.compiler.boundmass, spec.compiler.boundinertia = True, 1.0, 1.0
     hollow = hollow_meshes(spec.compile())
-    return dict(sorted((files[name], share) for name, share in hollow.items() if name in files))
+    found = sorted((files[name], share) for name, share in hollow.items() if name in files)
+    return {mesh: share for mesh, share in found if pieces_beside(mesh).is_file() or not pieces_of(mesh)}
 
 
 def hollow_scenery(model: Any) -> dict[str, float]:
