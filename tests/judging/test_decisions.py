@@ -87,6 +87,26 @@ def test_decides(sentence: str, outcome: Outcome, robustness: float | None) -> N
     assert found.robustness == (None if robustness is None else pytest.approx(robustness))
 
 
+NEGATIVE = "'-1 m{}' is negative, so its clause would always have the same verdict: remove the sign"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "reason"),
+    [
+        ('"ball" is farther than "-1 m" from "cube" after event "t:e"', NEGATIVE.format("")),
+        ('not ( "ball" is nearer than "-1 m" to "cube" after event "t:e" )', NEGATIVE.format("")),
+        ('"ball" moves slower than "-1 m/s" after event "t:e"', NEGATIVE.format("/s")),
+        (
+            '"ball" is farther than "1 kg" from "cube" after event "t:e"',
+            "'1 kg' is a mass, not a length: write a length with its unit, as in '5 m'",
+        ),
+    ],
+)
+def test_a_limit_that_is_no_limit_decides_nothing(sentence: str, reason: str) -> None:
+    found = decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys())
+    assert (found.outcome, found.cause, found.reason) == (Outcome.UNKNOWN, Cause.UNOBSERVED, reason)
+
+
 LEFT, HELD = '"ball" is located at "left" after event "t:e"', '"ball" is held by "arm" after event "t:e"'
 RIGHT = '"ball" is located at "right" after event "t:e"'
 

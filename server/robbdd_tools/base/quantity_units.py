@@ -86,6 +86,17 @@ def read_quantity(text: str, dimension: str) -> Quantity:
     return Quantity(float(match[1]), match[2])
 
 
+def read_limit(text: str, dimension: str) -> Quantity:
+    """Return a limit that is never negative. Raises ``QuantityError``.
+
+    With a negative limit, a predicate such as *is farther than* would be true, or never true, whatever happens.
+    """
+    found = read_quantity(text, dimension)
+    if found.value < 0:
+        raise QuantityError(f"'{text}' is negative, so its clause would always have the same verdict: remove the sign")
+    return found
+
+
 def with_unit(dimension: str) -> str:
     """Return the instruction to write a quantity with a unit."""
     return f"write {_article(dimension)} with its unit, as in '5 {units_of(dimension)[0]}'"

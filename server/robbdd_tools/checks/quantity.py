@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.base.quantity_units import QuantityError, dimension_of, read_quantity
+from robbdd_tools.base.quantity_units import QuantityError, dimension_of, read_limit, read_quantity
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.chosen_elements import written_elements
@@ -71,14 +71,11 @@ def _slots(clauses: Clauses) -> Iterator[tuple[Slot, tree.Argument]]:
 
 
 def _problem(text: str, slot: Slot) -> str:
+    read = read_limit if slot.unsigned else read_quantity
     try:
-        found = read_quantity(text, slot.dimension)
+        read(text, slot.dimension)
     except QuantityError as error:
         return str(error)
-    if found.value < 0 and slot.unsigned:
-        return (
-            f"the {slot.name} '{text}' is negative, so its clause would always have the same verdict: remove the sign"
-        )
     return ""
 
 

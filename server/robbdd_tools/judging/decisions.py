@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, count, product
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.quantity_units import QuantityError
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.settings import SettingError
 from robbdd_tools.judging.uncertainty import certain
@@ -164,7 +165,7 @@ def _judged(fluent: Fluent, instance: Instance, trace: Trace, regions: Regions) 
     try:
         judged = certain if trace.uncertain or fluent.predicate.error else judge
         return judged(fluent.predicate, instance.arguments, fluent.time, trace, regions, condition)
-    except SettingError as error:
+    except (SettingError, QuantityError) as error:
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:
         return unknown(str(error), Cause.USER_CODE, fault=error.fault)

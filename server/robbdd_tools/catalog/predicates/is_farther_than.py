@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit, read_quantity
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.catalog.geometry import distance_between
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Distance of the two positions minus the given distance, in the unit of the given distance, shape (n,)."""
-    bound = read_quantity(str(arguments["distance"]), "length")
+    bound = read_limit(str(arguments["distance"]), "length")
     return (distance_between(evidence, str(arguments["one"]), str(arguments["other"])) - bound.si) / bound.factor
 
 

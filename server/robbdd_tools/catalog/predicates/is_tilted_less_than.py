@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit, read_quantity
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Limit minus the angle between the object's z axis and the vertical, in the unit of the limit, shape (n,)."""
     import numpy as np
 
-    limit = read_quantity(str(arguments["limit"]), "angle")
+    limit = read_limit(str(arguments["limit"]), "angle")
     # The vertical component of the rotated z axis; rounding may exceed 1.
     _, x, y, _ = evidence.orientation(str(arguments["object"])).T
     tilt = np.arccos(np.clip(1.0 - 2.0 * (x**2 + y**2), -1.0, 1.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return the joints' smallest distance from their limits minus the given one, % of the joint's range, (n,)."""
-    bound = read_quantity(str(arguments["share"]), "ratio")
+    bound = read_limit(str(arguments["share"]), "ratio")
     return (evidence.joint_clearance(str(arguments["agent"])) - bound.si) / bound.factor
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit, read_quantity
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Limit minus the speed of the agent's tool since the previous sample, in the unit of the limit, shape (n,)."""
     import numpy as np
 
-    limit = read_quantity(str(arguments["limit"]), "speed")
+    limit = read_limit(str(arguments["limit"]), "speed")
     speed = np.linalg.norm(evidence.velocity(str(arguments["agent"])), axis=1)
     return (limit.si - speed) / limit.factor
 

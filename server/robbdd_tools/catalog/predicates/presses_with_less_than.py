@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.catalog.contacts import TOUCH, contact_force
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Limit minus the largest contact force since the previous sample, N, shape (n,)."""
-    return read_quantity(str(arguments["limit"]), "force").si - contact_force(evidence, arguments)
+    return read_limit(str(arguments["limit"]), "force").si - contact_force(evidence, arguments)
 
 
 PRESSES_WITH_LESS_THAN = Predicate(

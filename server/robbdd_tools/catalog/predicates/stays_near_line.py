@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit, read_quantity
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.catalog.geometry import distance_from_segment, only_position
 
@@ -18,7 +18,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     The line connects the positions of the two other elements at the same sample. Raises ``KeyError`` for a workspace
     that several objects carry.
     """
-    bound = read_quantity(str(arguments["distance"]), "length")
+    bound = read_limit(str(arguments["distance"]), "length")
     point, start, end = (only_position(evidence, str(arguments[slot])) for slot in ("one", "origin", "destination"))
     return (bound.si - distance_from_segment(point, start, end)) / bound.factor
 

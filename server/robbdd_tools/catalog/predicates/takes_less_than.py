@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.quantity_units import read_quantity
+from robbdd_tools.base.quantity_units import read_limit, read_quantity
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 
 if TYPE_CHECKING:
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 def time_left(seconds: float, arguments: Arguments) -> float:
     """Limit minus a duration (s), in the unit of the limit."""
-    limit = read_quantity(str(arguments["limit"]), "time")
+    limit = read_limit(str(arguments["limit"]), "time")
     return (limit.si - seconds) / limit.factor
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Limit minus the time since the first sample, in the unit of the limit, shape (n,). Only plots show it."""
-    limit = read_quantity(str(arguments["limit"]), "time")
+    limit = read_limit(str(arguments["limit"]), "time")
     return (limit.si - (evidence.times - evidence.times[0])) / limit.factor
 
 
