@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -85,6 +86,14 @@ def test_a_gripper_that_opens_at_zero_and_closes_at_255_is_understood(tmp_path: 
     found = robot(tmp_path, strangers.SIX)
     assert (found.gripper_open, found.gripper_closed, found.pads) == (0.0, 255.0, ("lpad", "rpad"))
     assert finger_motion(found).rate == pytest.approx(255 / (found.stroke / 2), rel=0.01)
+
+
+def test_fingers_whose_ranges_begin_at_zero_and_differ_close_on_each_other(tmp_path: Path) -> None:
+    text = re.sub(r'ctrlrange="(0 .035|-.035 0)"', 'ctrlrange="-1 1"', strangers.SCARA)
+    found = robot(tmp_path, text.replace('range="-.035 0"', 'range="-.03 0"'))
+    assert sorted(len(face) for face in finger_motion(found).faces) == [1, 1]
+    # Limits are soft: the force of both actuators pushes the fingers 6 mm beyond theirs.
+    assert found.stroke == pytest.approx(0.066, abs=1e-3)
 
 
 def test_a_thumb_closes_on_two_fingers_that_are_one_face(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,8 @@ from robbdd_tools.catalog.executable import (
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.placement import TABLE_TOP
+from world.arms import MJCF
+from world.scene_instances import instance, link
 from world.worlds import BALL, BENCH_WS, CUBE, PANDA, SCENE, scenario
 
 HALF_CUBE, RADIUS = 0.01575, 0.030
@@ -55,6 +58,19 @@ def test_two_things_in_one_another_are_named_with_their_depth() -> None:
         match=r"^cell\.scenex:7:5: 'env:ball1' and 'env:cube1' overlap by 12 mm: nothing may overlap",
     ):
         course(cube1=(0.5, 0.1, height), ball1=(0.5, 0.1 + HALF_CUBE + RADIUS - 0.012, height))
+
+
+def test_a_body_that_an_arms_file_fixes_to_the_room_is_named(tmp_path: Path) -> None:
+    wall = '<body name="wall" pos="0.5 0 0"><geom type="box" size="0.1 0.5 0.5"/></body></worldbody>'
+    (tmp_path / "arm.xml").write_text(MJCF.replace("</worldbody>", wall), encoding="utf-8")
+    arm = ModelSource("x:arm", "mjcf", "file", "arm.xml", origin=Origin(str(tmp_path / "cell.scenex"), 3, 7))
+    cube = ModelSource("x:cube", "mjcf", "catalog", "cube", bodies=(("x:g.cube", "b"),))
+    elements = Realisation(CUBE, (cube,)), Realisation("env:own", (arm,), is_agent=True)
+    staged = instance(link("x:g.cube.f", (0.5, 0.1, 0.116)), elements=elements)
+    execution = ExecutionSpec("x:e", "x:e", Implementation("x:i", "catalog", "pick-place"), staged)
+    scene = replace(ON_TABLE, objects=(CUBE, "env:bench"), agents=("env:own",))
+    with pytest.raises(SceneError, match=r"'env:cube1' and 'wall' of 'env:own' overlap by \d+ mm"):
+        BehaviourRun(replace(scenario(scene), execution=execution), ())
 
 
 def test_a_thing_in_the_table_is_named_with_its_depth() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from robbdd_tools.catalog.executable import ModelEntry
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
@@ -158,12 +160,14 @@ class GripperActuator:
         leader = self._spec.joint(first.target)
         for other in others:
             follower = self._spec.joint(other.target)
-            mirrored = _is_mirrored(first.ctrlrange, other.ctrlrange) or _is_mirrored(leader.range, follower.range)
+            mirrored = _is_mirrored(first.ctrlrange, other.ctrlrange) or _is_opposite(leader.range, follower.range)
             if not self._follows(follower):
                 equality = self._spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT)
                 equality.name1, equality.name2 = follower.name, leader.name
                 equality.objtype = mujoco.mjtObj.mjOBJ_JOINT
                 equality.data[:5] = [0.0, -1.0 if mirrored else 1.0, 0.0, 0.0, 0.0]
+                # The constraint is stiffer than a limit: it would push the other finger beyond its range.
+                leader.range = _common(leader.range, -follower.range[::-1] if mirrored else follower.range)
             self._spec.delete(other)
         if others:
             share = 1.0 + len(others)
@@ -197,6 +201,18 @@ def make_rubber(face: Any) -> None:
 def _is_mirrored(one: FloatArray, other: FloatArray) -> bool:
     """Return whether two ranges of values are opposite, like for two fingers that move in opposite directions."""
     return bool(one[0] != one[1] and abs(one[0] + other[1]) + abs(one[1] + other[0]) < 1e-6 and one[0] != other[0])
+
+
+def _is_opposite(one: FloatArray, other: FloatArray) -> bool:
+    """Return whether two ranges of joints are mirrored, or on different sides of zero, where both fingers begin."""
+    above, below = (one, other) if one[0] >= other[0] else (other, one)
+    return _is_mirrored(one, other) or bool(below[0] < below[1] <= 0.0 <= above[0] < above[1])
+
+
+def _common(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return what two ranges have in common; the first one if one has no limits or they have nothing in common."""
+    low, high = max(one[0], other[0]), min(one[1], other[1])
+    return np.array([low, high]) if low < high else one
 
 
 def _names(things: Any) -> str:

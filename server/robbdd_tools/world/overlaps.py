@@ -11,6 +11,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.owners import geom_owners
 
 if TYPE_CHECKING:
+    from robbdd_tools.world.composition import World
     from robbdd_tools.world.simulation import Simulation
 
 TOLERATED = 1e-3
@@ -29,15 +30,32 @@ def refuse_overlaps(simulation: Simulation) -> None:
     owners = geom_owners(world.model, world.cast.agents)
     elements = {*world.cast.objects, *world.cast.agents}
     depths: dict[tuple[str, str], float] = {}
+    elements_of: dict[tuple[str, str], tuple[str, str]] = {}
     pairs: list[list[int]] = data.contact.geom.tolist()
-    for (first, second), distance in zip(pairs, data.contact.dist.tolist(), strict=True):
-        one, other = sorted((owners[first], owners[second]), key=lambda owner: (owner not in elements, owner))
+    for pair, distance in zip(pairs, data.contact.dist.tolist(), strict=True):
+        first, second = sorted(pair, key=lambda geom: (owners[geom] not in elements, owners[geom]))
+        one, other = owners[first], owners[second]
         if one != other and one in elements and -distance > TOLERATED:
-            depths[one, other] = max(depths.get((one, other), 0.0), -distance)
+            names = _named(world, first, one), _named(world, second, other)
+            depths[names] = max(depths.get(names, 0.0), -distance)
+            elements_of[names] = one, other
     if depths:
-        deepest = sorted(depths, key=lambda pair: -depths[pair])
-        named = [f"'{one}' and '{other}' overlap by {1000 * depths[one, other]:.0f} mm" for one, other in deepest]
-        more = [f"{len(named) - MAX_NAMED} more pairs overlap"] if len(named) > MAX_NAMED else []
-        origins = (world.cast.origin(name) for name in deepest[0])
+        deepest = sorted(depths, key=lambda names: -depths[names])
+        said = [f"{one} and {other} overlap by {1000 * depths[one, other]:.0f} mm" for one, other in deepest]
+        more = [f"{len(said) - MAX_NAMED} more pairs overlap"] if len(said) > MAX_NAMED else []
+        origins = (world.cast.origin(name) for name in elements_of[deepest[0]])
         origin = next((origin for origin in origins if origin is not None), None)
-        raise Overlap(f"{'; '.join(named[:MAX_NAMED] + more)}: nothing may overlap at the start", origin=origin)
+        raise Overlap(f"{'; '.join(said[:MAX_NAMED] + more)}: nothing may overlap at the start", origin=origin)
+
+
+def _named(world: World, geom: int, owner: str) -> str:
+    """Return the name of a geom's owner, with the body that the file of an agent fixes to the room beside the arm."""
+    model = world.model
+    body = int(model.geom_bodyid[geom])
+    top = int(model.body_rootid[body])
+    agent = world.cast.agents.get(owner)
+    if agent is None or any(
+        int(model.body_rootid[model.jnt_bodyid[model.joint(f"{owner}/{joint}").id]]) == top for joint in agent.joints
+    ):
+        return f"'{owner}'"
+    return f"'{str(model.body(body).name).removeprefix(f'{owner}/')}' of '{owner}'"
