@@ -176,3 +176,8 @@ def test_the_arm_stands_where_the_scene_maps_a_body_of_its_file(tmp_path: Path) 
     assert data.body(f"{ARM}/foot").xmat == pytest.approx(np.eye(3).ravel(), abs=1e-6)
     data = Simulation(placed(tmp_path, text, 0.15)).data
     assert data.body(f"{ARM}/foot").xpos == pytest.approx([0.3, 0.2, 0.25])
+
+
+def test_a_part_that_other_files_include_is_no_model(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"arm\.xml cannot be read: it is a part that other files include"):
+        robot(tmp_path, f"<mujocoinclude>{MJCF[MJCF.index('<worldbody') :].replace('</mujoco>', '')}</mujocoinclude>")
