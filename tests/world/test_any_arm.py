@@ -177,8 +177,8 @@ NEVER = MJCF.replace('range="0 0.04"', 'range="0.03 0.04"').replace('ctrlrange="
         (MJCF, ArmModel(pads=("left_pad", "hand")), "the gripper of arm.xml"),
         (
             NEVER,
-            FACES,
-            "has faces that never meet: 0.080 m between its faces at 0.04; 0.060 m between its faces at 0.03",
+            ArmModel(actuator="grip"),
+            "the gripper of arm.xml has no two parts that meet when it closes: name its pads",
         ),
         (
             MJCF.replace('name="elbow" axis="0 1 0" range="-2.8 2.8"', 'name="elbow" axis="0 1 0" range="2.8 -2.8"'),

@@ -96,6 +96,28 @@ def test_fingers_whose_ranges_begin_at_zero_and_differ_close_on_each_other(tmp_p
     assert found.stroke == pytest.approx(0.066, abs=1e-3)
 
 
+def apart(closed: float) -> str:
+    """Return an arm whose fingers stop ``closed`` (m) from the middle."""
+    text = MJCF.replace('range="0 0.04"', f'range="{closed} 0.04"')
+    return text.replace('ctrlrange="-0.002 0.04"', f'ctrlrange="{closed} 0.04"')
+
+
+PADS = ArmModel(pads=("left_pad", "right_pad"))
+
+
+@pytest.mark.physics
+def test_a_gripper_whose_faces_stay_apart_holds_what_is_wider(tmp_path: Path) -> None:
+    run = picking(tmp_path, apart(0.012), PADS)
+    assert finger_motion(run.simulation.robots[ARM].model).narrowest == pytest.approx(0.024, abs=1e-4)
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_a_gripper_whose_faces_stay_apart_holds_nothing_narrower(tmp_path: Path) -> None:
+    run = picking(tmp_path, apart(0.03), PADS)
+    assert not run.run_behaviour(0)
+    assert re.search(r"cube1 is 0\.\d+ m wide, the gripper closes to 0\.060 m", run.trace.remark), run.trace.remark
+
+
 def test_a_thumb_closes_on_two_fingers_that_are_one_face(tmp_path: Path) -> None:
     found = robot(tmp_path, strangers.THUMB)
     thumb, beside = finger_motion(found).faces

@@ -63,6 +63,13 @@ def test_what_is_too_wide_is_explained() -> None:
         finger_grasps("crate", thing(ShapeKind.BOX, 0.1, 0.1, 0.1), AT, UPRIGHT, STROKE)
 
 
+def test_what_is_narrower_than_a_closed_gripper_is_explained() -> None:
+    with pytest.raises(BehaviourError, match=r"pin is 0\.020 m wide, the gripper closes to 0\.020 m"):
+        finger_grasps("pin", thing(ShapeKind.BOX, 0.01, 0.01, 0.1), AT, UPRIGHT, STROKE, 0.02)
+    (only,) = finger_grasps("strip", thing(ShapeKind.BOX, 0.015, 0.01, 0.1), AT, UPRIGHT, STROKE, 0.02)
+    assert only.width == pytest.approx(0.03)
+
+
 def made_of(*parts: tuple[tuple[float, float, float], tuple[float, float, float]]) -> ObjectModel:
     """Return an object of boxes, each given by half edges and position (m)."""
     shapes = tuple(Shape(ShapeKind.BOX, size, place) for size, place in parts)

@@ -21,6 +21,7 @@ class FingerMotion:
     - ``sweep``: pairs, from open to closed: the distance (m) of the faces, and how far (m) the fingers then reach
       beyond the tool; empty if the fingers slide.
     - ``one_sided``: whether only one jaw moves, along the tool's y axis: the tool is at the surface of the other one.
+    - ``narrowest``: distance (m) of the faces when the gripper is closed; 0 if they meet.
     """
 
     rate: float = 1.0
@@ -29,6 +30,7 @@ class FingerMotion:
     faces: tuple[tuple[str, ...], ...] = ()
     sweep: tuple[tuple[float, float], ...] = ()
     one_sided: bool = False
+    narrowest: float = 0.0
 
     def reach(self, width: float) -> float:
         """Return how far (m) the fingers reach beyond the tool at most until they have closed to a width (m)."""

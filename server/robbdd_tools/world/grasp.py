@@ -44,16 +44,16 @@ class Grasp:
 
 
 def finger_grasps(
-    name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, stroke: float
+    name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, stroke: float, closed: float = 0.0
 ) -> list[Grasp]:
-    """Return the grasps of an object at a pose for a gripper with this ``stroke`` (m).
+    """Return the grasps of an object at a pose for a gripper that opens to ``stroke`` and closes to ``closed`` (m).
 
     Those of the part in the object's middle come first, then those of up to ``OTHER_PARTS`` parts beside it. Raises
-    ``BehaviourError`` when the object is wider than the gripper opens.
+    ``BehaviourError`` when the object is wider than the gripper opens, or narrower than it closes.
     """
     middle = _middle(model, position, rotation)
     fitting: list[Grasp] = []
-    narrowest = inf
+    narrowest, widest = inf, 0.0
     for index in (middle, *_parts_beside(model, position, rotation, middle)):
         shape = model.shapes[index]
         center = position + rotation @ np.array(shape.position)
@@ -62,10 +62,13 @@ def finger_grasps(
         below = float(grip[2]) - _bottom(model, position, rotation)
         aside = (0.0, 0.0) if index == middle else (float(position[0] - grip[0]), float(position[1] - grip[1]))
         part = None if index == middle else index
-        fits = ((angle, width) for angle, width in directions if width + PLAY <= stroke)
+        fits = ((angle, width) for angle, width in directions if closed < width and width + PLAY <= stroke)
         fitting += [Grasp(grip, angle, width, below, aside, part) for angle, width in fits]
         narrowest = min(narrowest, *(width for _, width in directions))
+        widest = max(widest, *(width for _, width in directions))
     if not fitting:
+        if widest <= closed:
+            raise BehaviourError(f"{name} is {widest:.3f} m wide, the gripper closes to {closed:.3f} m")
         play = "" if narrowest > stroke else f"; with {1000 * PLAY:g} mm of play, that is too little"
         raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the gripper opens {stroke:.3f} m{play}")
     return fitting

@@ -97,7 +97,7 @@ class Fingers(Gripper):
 
     def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
         """Return the grasps across the object's sides that are narrow enough."""
-        found = finger_grasps(name, model, position, rotation, self._robot.stroke)
+        found = finger_grasps(name, model, position, rotation, self._robot.stroke, self._motion.narrowest)
         return [self._off_the_support(grasp) for grasp in found]
 
     def _off_the_support(self, grasp: Grasp) -> Grasp:

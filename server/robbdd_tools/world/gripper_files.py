@@ -14,7 +14,7 @@ from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.finger_opening import Opening
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
-from robbdd_tools.world.gripper_faces import MOVES, NEVER_MEET, extent, gap, meeting_faces
+from robbdd_tools.world.gripper_faces import MOVES, extent, gap, meeting_faces
 from robbdd_tools.world.hand_direction import finger_frame, jaw_frame, outwards
 from robbdd_tools.world.mesh_pieces import CUT
 from robbdd_tools.world.model_meshes import hollow_meshes
@@ -47,6 +47,7 @@ class FoundGripper:
     - ``sweep``: pairs for rotating fingers, from open to closed: the opening (m), and how far (m) the fingers then
       reach beyond the tool.
     - ``one_sided``: whether the second face does not move: one jaw closes on the hand.
+    - ``narrowest``: distance (m) of the faces when the gripper is closed.
     - ``middle``, ``across``, ``ahead``: the place (m) between the tips of the closed fingers, the closing direction,
       and the direction out of the hand, in the frame of the palm, shape (3,) each.
     """
@@ -65,6 +66,7 @@ class FoundGripper:
     ahead: FloatArray
     sweep: tuple[tuple[float, float], ...] = ()
     one_sided: bool = False
+    narrowest: float = 0.0
 
     @property
     def pads(self) -> tuple[str, ...]:
@@ -132,10 +134,6 @@ class GripperReader:
             raise self._parts.error(f"does not move its faces: {described}. Name other pads or another actuator")
         if stated[0] not in (None, opened) or stated[1] not in (None, closed):
             raise self._parts.error(f"has 'open' and 'close' reversed: {described}", "open")
-        if gaps[closed] > NEVER_MEET:
-            raise self._parts.error(
-                f"has faces that never meet: {described}. Name other pads, or another value for close", "close"
-            )
         return opened, closed
 
     def _stroke(self, measured: float) -> float:
@@ -243,6 +241,7 @@ class GripperReader:
             turn.T @ ahead,
             sweep,
             one_sided,
+            max(0.0, gaps[closed]),
         )
 
     def _sweep(

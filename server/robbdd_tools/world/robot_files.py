@@ -151,7 +151,13 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     _prepared[key] = spec
     note_changes(key, changes)
     motion = FingerMotion(
-        gripper.rate, gripper.settling, gripper.open_joints, gripper.faces, gripper.sweep, gripper.one_sided
+        gripper.rate,
+        gripper.settling,
+        gripper.open_joints,
+        gripper.faces,
+        gripper.sweep,
+        gripper.one_sided,
+        gripper.narrowest,
     )
     set_finger_motion(key, motion)
     limits = (float(model.jnt_actfrcrange[model.joint(joint).id, 1]) for joint in joints)

@@ -68,6 +68,8 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
         f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'across' if is_cup else 'wide'}"
     )
+    if finger_motion(robot).narrowest > SAME:
+        yield f"closed gripper: its faces stay {1000 * finger_motion(robot).narrowest:.0f} mm apart"
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
     yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
 
