@@ -89,7 +89,7 @@ def read_quantity(text: str, dimension: str) -> Quantity:
 def read_limit(text: str, dimension: str) -> Quantity:
     """Return a limit that is never negative. Raises ``QuantityError``.
 
-    With a negative limit, a predicate such as *is farther than* would be true, or never true, whatever happens.
+    With a negative limit, a predicate such as *is farther than* would be true always or never.
     """
     found = read_quantity(text, dimension)
     if found.value < 0:
