@@ -30,7 +30,7 @@ def cut(path: Path, threshold: float, *, again: bool) -> int:
     due = {mesh: share for mesh, share in hollow.items() if again or not pieces_beside(mesh).is_file()}
     if not hollow:
         print_line(f"{path}: no collision mesh is hollow")
-    for mesh in hollow.keys() - due.keys():
+    for mesh in (mesh for mesh in hollow if mesh not in due):
         print_line(f"{mesh.name}: has been cut (--force cuts it again)")
     return _cut_all(due, threshold)
 
