@@ -30,7 +30,7 @@ def test_a_length_is_no_speed() -> None:
 
 
 def test_a_negative_limit_decides_nothing() -> None:
-    words = "quantity '-0.25 m/s' is negative"
+    words = "quantity the limit '-0.25 m/s' is negative"
     check(marked(model("-0.25 m/s"), "slower than «-0.25 m/s»,", words))
     check(marked(model("<value>", "{ 0.25 m/s, -0.25 m/s }"), "0.25 m/s, «-0.25 m/s» }", words))
     check(model("0 m/s"))

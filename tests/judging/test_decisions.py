@@ -87,7 +87,7 @@ def test_decides(sentence: str, outcome: Outcome, robustness: float | None) -> N
     assert found.robustness == (None if robustness is None else pytest.approx(robustness))
 
 
-NEGATIVE = "'-1 m{}' is negative, so its clause would always have the same verdict: remove the sign"
+NEGATIVE = "the limit '-1 m{}' is negative, so its clause would always have the same verdict: remove the sign"
 
 
 @pytest.mark.parametrize(

@@ -93,7 +93,9 @@ def read_limit(text: str, dimension: str) -> Quantity:
     """
     found = read_quantity(text, dimension)
     if found.value < 0:
-        raise QuantityError(f"'{text}' is negative, so its clause would always have the same verdict: remove the sign")
+        raise QuantityError(
+            f"the limit '{text}' is negative, so its clause would always have the same verdict: remove the sign"
+        )
     return found
 
 
