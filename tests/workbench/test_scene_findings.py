@@ -54,6 +54,20 @@ def test_overlaps_and_unusable_models_are_reported_with_their_places(cell: Path)
     assert overlap == "65:10: warning: 'bin' and 'table' overlap by 20 mm: nothing may overlap at the start [overlap]"
 
 
+def test_a_fixed_object_from_a_file_without_a_pose_is_reported(cell: Path) -> None:
+    shape = '<geom type="box" size="0.1 0.1 0.02"/>'
+    for name, joint in (("fixed", ""), ("loose", "<freejoint/>")):
+        text = f'<mujoco><worldbody><body name="{name}">{joint}{shape}</body></worldbody></mujoco>'
+        (cell.parent / f"{name}.xml").write_text(text, encoding="utf-8")
+    rewrite(cell, ('catalog "bin" map body <poses.bin> to "bin"', "sys path = 'loose.xml'"))
+    assert found(cell.with_name("tidy.bddx")) == []
+    rewrite(cell, ("loose.xml", "fixed.xml"))
+    assert found(cell.with_name("tidy.bddx")) == [
+        "65:10: warning: 'bin' has no pose: place it in the .scenex; its model (from fixed.xml) has no standard place"
+        " [pose]"
+    ]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "place", "words"),
     [

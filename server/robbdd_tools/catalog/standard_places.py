@@ -28,9 +28,7 @@ def at_places(models: Mapping[str, ObjectModel], names: Iterable[str], where: st
     for name in names:
         model = models[name]
         if not model.places:
-            raise NoRoom(
-                name, f"'{name}' has no pose: place it in the .scenex; its model ({model.doc}) has no standard place"
-            )
+            raise NoRoom(name, without_place(name, model))
         free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
         place = next(free, None)
         if place is None:
@@ -38,6 +36,11 @@ def at_places(models: Mapping[str, ObjectModel], names: Iterable[str], where: st
             raise NoRoom(name, f"{room}, minus the occupied places; '{name}' has no place")
         used.append((place, model))
         yield name, place
+
+
+def without_place(name: str, model: ObjectModel) -> str:
+    """Return what is wrong with an object that has neither a pose nor a standard place."""
+    return f"'{name}' has no pose: place it in the .scenex; its model ({model.doc}) has no standard place"
 
 
 def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:

@@ -10,9 +10,11 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.standard_places import without_place
 from robbdd_tools.world.composition import World, compile_world
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import centred
+from robbdd_tools.world.frames import PoseError
 from robbdd_tools.world.model_files import usable
 from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.scene import Cast
@@ -94,6 +96,8 @@ def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | N
     pose = staging.pose(name)
     for _ in staging.openings():
         pass  # Raises the faults of openings.
+    if model is not None and pose is None and not model.free and not model.places:
+        raise PoseError(without_place(name, model), origin=one.origin)
     if model is not None and pose is not None and (other is None or pose == other.pose(name)):
         placed.objects[name], placed.poses[name] = centred(model), pose
 
