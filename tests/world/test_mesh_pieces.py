@@ -117,6 +117,36 @@ def test_a_cut_object_consists_of_its_pieces(tmp_path: Path) -> None:
     np.testing.assert_allclose(high - low, (WIDTH, LENGTH, HEIGHT), atol=4e-3)
 
 
+def with_workspace(folder: Path, height: float) -> ModelSource:
+    """Return the tote with a workspace whose middle is at a height (m) above its floor."""
+    path = write_model(folder)
+    site = f'<site name="workspace" type="box" pos="0 0 {height}" size="0.05 0.05 0.03"/></body>'
+    path.write_text(path.read_text(encoding="utf-8").replace("</body>", site, 1), encoding="utf-8")
+    return source(path)
+
+
+def test_a_workspace_that_the_hull_of_a_mesh_fills_is_refused(tmp_path: Path) -> None:
+    tote = with_workspace(tmp_path, HEIGHT / 2)
+    words = (
+        r"in tote\.xml, the mesh 'shell' collides as its convex hull, which fills the workspace 'workspace'; 'robbdd"
+    )
+    with pytest.raises(SceneError, match=words):
+        object_from(load(tote), tote, "", carries=True)
+
+
+def test_a_workspace_above_a_mesh_is_not_filled(tmp_path: Path) -> None:
+    tote = with_workspace(tmp_path, HEIGHT + 0.01)
+    assert object_from(load(tote), tote, "", carries=True).hollow > 1
+
+
+def test_a_workspace_in_a_mesh_that_is_cut_is_not_filled(tmp_path: Path) -> None:
+    tote = with_workspace(tmp_path, HEIGHT / 2)
+    cut(tmp_path / "tote.xml")
+    region = object_from(load(tote), tote, "", carries=True).model.region
+    assert region is not None
+    assert region.center[2] == pytest.approx(HEIGHT / 2)
+
+
 def test_a_scaled_mesh_has_scaled_pieces(tmp_path: Path) -> None:
     path = write_model(tmp_path, attributes='scale="2 2 0.5"')
     cut(path)

@@ -124,20 +124,37 @@ def _add_geom(geom: Any, mesh: str, number: int) -> None:
         made.set_frame(geom.frame)
 
 
-def hollowness(model: Any, mesh: int) -> float | None:
-    """Return how many times a mesh's volume its convex hull has; ``None`` if its faces do not enclose a volume."""
+def is_in_hull(model: Any, mesh: int, point: FloatArray) -> bool:
+    """Return whether a point (m, shape (3,), in the frame of a compiled mesh) is inside the convex hull of the mesh."""
+    vertices, faces = _hull_of(model, mesh)
+    if not len(faces):
+        return False
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    outward = np.cross(b - a, c - a)
+    middle = vertices[np.unique(faces)].mean(axis=0)
+    sides = np.einsum("ij,ij->i", outward, point - a) * np.einsum("ij,ij->i", outward, middle - a)
+    return bool((sides > 0.0).all())
+
+
+def _hull_of(model: Any, mesh: int) -> tuple[FloatArray, Any]:
+    """Return the corners of a mesh (shape (n, 3)) and the triangles of its convex hull (shape (m, 3))."""
     first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
     vertices = np.asarray(model.mesh_vert[first : first + count], dtype=float)
-    start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
-    inner = volume(vertices, model.mesh_face[start : start + faces])
     graph = int(model.mesh_graphadr[mesh])
-    if graph < 0 or inner <= 0.0:
-        return None
+    if graph < 0:
+        return vertices, np.empty((0, 3), dtype=np.int64)
     corners, sides = int(model.mesh_graph[graph]), int(model.mesh_graph[graph + 1])
     # After the counts: an address and a number for each corner, the edges, then three corners for each face.
-    hull = graph + 2 + 3 * corners + 3 * sides
-    outer = volume(vertices, model.mesh_graph[hull : hull + 3 * sides].reshape(-1, 3))
-    return outer / inner if outer > 0.0 else None
+    start = graph + 2 + 3 * corners + 3 * sides
+    return vertices, model.mesh_graph[start : start + 3 * sides].reshape(-1, 3)
+
+
+def hollowness(model: Any, mesh: int) -> float | None:
+    """Return how many times a mesh's volume its convex hull has; ``None`` if its faces do not enclose a volume."""
+    vertices, hull = _hull_of(model, mesh)
+    start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    inner, outer = volume(vertices, model.mesh_face[start : start + faces]), volume(vertices, hull)
+    return outer / inner if inner > 0.0 and outer > 0.0 else None
 
 
 def volume(vertices: FloatArray, faces: Any) -> float:

@@ -18,7 +18,7 @@ from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of, space_above
-from robbdd_tools.world.model_meshes import hollow_meshes, read_model
+from robbdd_tools.world.model_meshes import hollow_meshes, read_model, refuse_filled
 from robbdd_tools.world.moving_parts import (
     handle_of,
     is_free,
@@ -192,6 +192,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     refuse_constraints(model, own, source)
     hollow = max(hollow_meshes(model, own).values(), default=0.0)
     sites = _sites(model, data, (body, *moving), body)
+    refuse_filled(model, data, [one for one in range(model.nsite) if _is_workspace(model, one, own)], own, source)
     parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
     main = _Rigid(model, data, body, body, source)
     low, high = bounds_of(main.shapes)
@@ -330,6 +331,10 @@ def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[i
     if len(found) == 1:
         found = [(body, replace(region, name="")) for body, region in found]
     return {body: tuple(region for one, region in found if one == body) for body in movers if found}
+
+
+def _is_workspace(model: Any, site: int, bodies: Sequence[int]) -> bool:
+    return str(model.site(site).name).endswith(SITE) and int(model.site_bodyid[site]) in bodies
 
 
 def _vector(numbers: Any) -> Vector:

@@ -10,14 +10,17 @@ from robbdd_tools.base.model_includes import model_files, pieces_beside
 from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import make_solid
-from robbdd_tools.world.mesh_pieces import HOLLOW, hollowness, pieces_of, use_pieces
+from robbdd_tools.world.mesh_pieces import CUT, HOLLOW, hollowness, is_in_hull, pieces_of, use_pieces
 from robbdd_tools.world.mjcf_files import read_mjcf
 from robbdd_tools.world.owners import is_scenery
 from robbdd_tools.world.urdf_files import is_urdf, mesh_address, read_urdf
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable
+    from collections.abc import Container, Iterable, Iterator
+
+    from robbdd_tools.catalog.executable import ModelSource
 
 
 def read_model(path: Path) -> Any:
@@ -77,6 +80,20 @@ def hollow_files(path: Path) -> dict[Path, float]:
     return {mesh: share for mesh, share in found if pieces_beside(mesh).is_file() or not pieces_of(mesh)}
 
 
+def refuse_filled(model: Any, data: Any, sites: Iterable[int], bodies: Container[int], source: ModelSource) -> None:
+    """Refuse a workspace whose middle is inside the convex hull of a mesh of ``bodies``: nothing can lie in it.
+
+    Raises ``SceneError``.
+    """
+    for geom in _colliding_meshes(model, bodies):
+        mesh = int(model.geom_dataid[geom])
+        for site in sites:
+            point = data.geom_xmat[geom].reshape(3, 3).T @ (data.site_xpos[site] - data.geom_xpos[geom])
+            if is_in_hull(model, mesh, point):
+                filled = f"the mesh '{model.mesh(mesh).name}' collides as its convex hull, which fills the workspace"
+                raise SceneError(f"in {source.name}, {filled} '{model.site(site).name}'; {CUT}", origin=source.origin)
+
+
 def hollow_scenery(model: Any) -> dict[str, float]:
     """Return the hollow collision meshes in the models of the whole scene, with how hollow they are."""
     found = ((name.partition("/"), share) for name, share in hollow_meshes(model).items())
@@ -88,12 +105,15 @@ def hollow_meshes(model: Any, bodies: Container[int] | None = None) -> dict[str,
 
     Only those of ``bodies`` are returned if they are given.
     """
-    colliding = {
-        int(model.geom_dataid[geom])
-        for geom in range(model.ngeom)
-        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
-        and model.geom_contype[geom] | model.geom_conaffinity[geom]
-        and (bodies is None or int(model.geom_bodyid[geom]) in bodies)
-    }
+    colliding = {int(model.geom_dataid[geom]) for geom in _colliding_meshes(model, bodies)}
     shares = {str(model.mesh(mesh).name): hollowness(model, mesh) for mesh in sorted(colliding)}
     return {name: share for name, share in shares.items() if share is not None and share >= HOLLOW}
+
+
+def _colliding_meshes(model: Any, bodies: Container[int] | None) -> Iterator[int]:
+    """Yield the geoms that collide as meshes, only those of ``bodies`` if they are given."""
+    for geom in range(model.ngeom):
+        is_mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+        is_own = bodies is None or int(model.geom_bodyid[geom]) in bodies
+        if is_mesh and is_own and model.geom_contype[geom] | model.geom_conaffinity[geom]:
+            yield geom
