@@ -12,7 +12,7 @@ import pytest
 from robbdd_tools.catalog.api import Region, Shape, ShapeKind
 from robbdd_tools.catalog.objects.bin import BIN
 from robbdd_tools.catalog.objects.cube import CUBE
-from robbdd_tools.world.extent import RIM, bounds_of, centred, outline_of
+from robbdd_tools.world.extent import RIM, bounds_of, centred, outline_of, with_walls
 
 BOX = Shape(ShapeKind.BOX, (0.1, 0.2, 0.3), (1.0, 2.0, 3.0))
 BALL = Shape(ShapeKind.SPHERE, (0.5, 0.0, 0.0), (1.0, 2.0, 3.0))
@@ -70,3 +70,46 @@ def test_a_real_bin_rests_on_its_bottom() -> None:
     assert centred(BIN).rest_height == pytest.approx(0.075)
     corners = [point for point, _ in outline_of(centred(BIN))]
     assert max(hypot(*point[:2]) for point in corners) == pytest.approx(hypot(0.15, 0.1))
+
+
+FLOOR = Shape(ShapeKind.BOX, (0.15, 0.1, 0.005), (0.0, 0.0, 0.005))
+INSIDE = Region((0.0, 0.0, 0.06), (0.14, 0.09, 0.05))
+
+
+def walls(height: float, sides: str = "news") -> tuple[Shape, ...]:
+    """Return walls of a height (m) above the floor of a tray, on some sides: north, east, west, south."""
+    half = middle = (height + 0.01) / 2
+    every = {
+        "n": Shape(ShapeKind.BOX, (0.15, 0.005, half), (0.0, 0.1, middle)),
+        "s": Shape(ShapeKind.BOX, (0.15, 0.005, half), (0.0, -0.1, middle)),
+        "e": Shape(ShapeKind.BOX, (0.005, 0.1, half), (0.15, 0.0, middle)),
+        "w": Shape(ShapeKind.BOX, (0.005, 0.1, half), (-0.15, 0.0, middle)),
+    }
+    return (FLOOR, *(every[side] for side in sides))
+
+
+@pytest.mark.parametrize(
+    ("shapes", "expected"),
+    [
+        (walls(0.1), True),
+        (walls(0.1, "new"), False),
+        (walls(0.1, "nsw"), False),
+        (walls(0.008), False),
+        ((FLOOR,), False),
+    ],
+    ids=["a bin", "no south wall", "no east wall", "a low rim", "a board"],
+)
+def test_a_workspace_is_walled_if_walls_rise_on_all_four_sides(shapes: tuple[Shape, ...], expected: bool) -> None:
+    assert with_walls(INSIDE, shapes).walled is expected
+
+
+def test_a_wall_may_consist_of_pieces_but_not_of_a_post() -> None:
+    pieces = tuple(Shape(ShapeKind.BOX, (0.07, 0.005, 0.05), (x, 0.1, 0.05)) for x in (-0.08, 0.08))
+    post = Shape(ShapeKind.BOX, (0.01, 0.005, 0.05), (0.0, 0.1, 0.05))
+    assert with_walls(INSIDE, (*walls(0.1, "ews"), *pieces)).walled
+    assert not with_walls(INSIDE, (*walls(0.1, "ews"), post)).walled
+
+
+def test_a_wall_far_from_the_workspace_does_not_count() -> None:
+    narrow = Region((0.0, 0.0, 0.06), (0.05, 0.09, 0.05))
+    assert not with_walls(narrow, walls(0.1)).walled

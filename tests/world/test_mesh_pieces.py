@@ -120,7 +120,7 @@ def test_a_cut_object_consists_of_its_pieces(tmp_path: Path) -> None:
 def with_workspace(folder: Path, height: float) -> ModelSource:
     """Return the tote with a workspace whose middle is at a height (m) above its floor."""
     path = write_model(folder)
-    site = f'<site name="workspace" type="box" pos="0 0 {height}" size="0.05 0.05 0.03"/></body>'
+    site = f'<site name="workspace" type="box" pos="0 0 {height}" size="0.08 0.13 0.03"/></body>'
     path.write_text(path.read_text(encoding="utf-8").replace("</body>", site, 1), encoding="utf-8")
     return source(path)
 
@@ -145,6 +145,7 @@ def test_a_workspace_in_a_mesh_that_is_cut_is_not_filled(tmp_path: Path) -> None
     region = object_from(load(tote), tote, "", carries=True).model.region
     assert region is not None
     assert region.center[2] == pytest.approx(HEIGHT / 2)
+    assert region.walled
 
 
 def test_a_scaled_mesh_has_scaled_pieces(tmp_path: Path) -> None:

@@ -15,6 +15,8 @@ from robbdd_tools.catalog.api import ObjectModel, Outline, Region, Shape, ShapeK
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
+RISES, BESIDE = 0.01, 0.03
+"""A wall rises more than 10 mm above the floor of a workspace, at most 30 mm beside it."""
 SPACE = 0.15
 """If a file has no site 'workspace', the workspace above the object has this height (m)."""
 RIM = 16
@@ -38,6 +40,24 @@ def space_above(low: FloatArray, high: FloatArray) -> Region:
     (x, y, _), (length, width, _) = (low + high) / 2, high - low
     center = (float(x), float(y), float(high[2]) + SPACE / 2)
     return Region(center, (float(length) / 2, float(width) / 2, SPACE / 2))
+
+
+def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
+    """Return a workspace of an object with these shapes, walled if a wall rises above its floor on all four sides."""
+    boxes = [bounds_of((shape,)) for shape in shapes]
+    center, half = np.array(region.center), np.array(region.half)
+    bottom = center[2] - half[2]
+    high = [(one, other) for one, other in boxes if one[2] < bottom + half[2] and other[2] > bottom + RISES]
+    for axis, along in ((0, 1), (1, 0)):
+        for side in (-1, 1):
+            face = center[axis] + side * half[axis]
+            beside = [box for box in high if box[0][axis] - BESIDE <= face <= box[1][axis] + BESIDE]
+            outer = [box for box in beside if side * (box[0][axis] + box[1][axis]) / 2 >= side * face]
+            first, last = center[along] - half[along], center[along] + half[along]
+            lengths = (min(other[along], last) - max(one[along], first) for one, other in outer)
+            if sum(length for length in lengths if length > 0.0) < half[along]:
+                return region
+    return replace(region, walled=True)
 
 
 def carrying(model: ObjectModel) -> ObjectModel:

@@ -17,7 +17,7 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.extent import bounds_of, space_above
+from robbdd_tools.world.extent import bounds_of, space_above, with_walls
 from robbdd_tools.world.model_meshes import hollow_meshes, read_model, refuse_filled
 from robbdd_tools.world.moving_parts import (
     handle_of,
@@ -214,7 +214,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         rest_height=-float(low[2]),
         color=main.color,
         doc=f"from {source.name}",
-        region=own,
+        region=None if own is None else with_walls(own, main.shapes),
         parts=tuple(region for region in sites.get(body, ()) if region.name),
         joint=replace(joint_of(model, data, body, 0, source), handle=main.handle) if jointed else None,
         inertia=main.inertia if free or jointed else None,
