@@ -203,17 +203,22 @@ def test_results_state_the_instance_and_later_commands_keep_it(tidy: Path, capsy
     assert "cell.scenex was changed since the run" in capsys.readouterr().err
 
 
-@pytest.mark.physics
-def test_a_run_names_the_bodies_of_the_scene_through_which_everything_passes(
-    tidy: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    curtain = '<body name="curtain" pos="0 0 2"><geom size=".1" contype="0" conaffinity="0"/></body>'
-    Path("room.xml").write_text(f"<mujoco><worldbody>{curtain}</worldbody></mujoco>", encoding="utf-8")
+def add_room(text: str) -> None:
+    """Give the cell a model of the whole scene with this MJCF text."""
+    Path("room.xml").write_text(text, encoding="utf-8")
     edit(
         "cell.scenex",
         "    scene: <cell>\n",
         "    scene: <cell>\n    model room_model as mjcf { sys path = 'room.xml' }\n",
     )
+
+
+@pytest.mark.physics
+def test_a_run_names_the_bodies_of_the_scene_through_which_everything_passes(
+    tidy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    curtain = '<body name="curtain" pos="0 0 2"><geom size=".1" contype="0" conaffinity="0"/></body>'
+    add_room(f"<mujoco><worldbody>{curtain}</worldbody></mujoco>")
     assert main(["run", str(tidy), "--scenex", "cell.scenex", "--repeat", "2", "--no-store"]) == 0
     said = capsys.readouterr()
     notes = [line for line in (said.out + said.err).splitlines() if "passes through" in line]
@@ -227,12 +232,7 @@ def test_a_run_names_hollow_meshes(tidy: Path, capsys: pytest.CaptureFixture[str
     write_tote(Path("tote.obj"))
     mesh = '<asset><mesh name="cabinet" file="tote.obj"/></asset>'
     shape = '<worldbody><geom type="mesh" mesh="cabinet" pos="0 0 3"/></worldbody>'
-    Path("room.xml").write_text(f"<mujoco>{mesh}{shape}</mujoco>", encoding="utf-8")
-    edit(
-        "cell.scenex",
-        "    scene: <cell>\n",
-        "    scene: <cell>\n    model room_model as mjcf { sys path = 'room.xml' }\n",
-    )
+    add_room(f"<mujoco>{mesh}{shape}</mujoco>")
     assert main(["run", str(tidy), "--scenex", "cell.scenex", "--no-store"]) == 0
     said = capsys.readouterr()
     assert [line for line in (said.out + said.err).splitlines() if "hollow" in line] == [

@@ -37,10 +37,10 @@ export function appearanceOf(shown: object): Appearance | undefined {
 }
 
 /**
- * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause, with its reason: after it, the
- * editor draws the failure of the test over everything else, but not always, and only the part that has room. A verdict that was re-judged is drawn after its clause, because
- * someone is typing there; if it were out of sight there, it is drawn at a line next to it. Any other verdict that would be
- * out of sight after its clause is drawn before it.
+ * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause, with its reason: after it,
+ * the editor draws the failure of the test over everything else, but not always, and only the part that has room. A verdict
+ * that was re-judged is drawn after its clause, because someone is typing there; if it were out of sight there, it is drawn
+ * at a line next to it. Any other verdict that would be out of sight after its clause is drawn before it.
  */
 export function marksOfHints(document: Text, hints: readonly Hint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {

@@ -15,6 +15,7 @@ from robbdd_tools.base.model_paths import mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.mesh_formats import UnreadableMesh, as_stl, is_readable
+from robbdd_tools.world.mesh_pieces import HIDDEN
 
 CONVERTED = "robbdd-mesh"
 """Beginning of the names under which the engine gets converted meshes."""
@@ -24,8 +25,6 @@ FASTEST = 50.0
 """No joint of an arm is faster than this (rad/s, m/s): the roll axes of the fastest SCARA arms reach 50 rad/s."""
 LEAST = 1e-6
 """Smallest moment of inertia (kg m²) of a link whose file has no positive one."""
-HIDDEN = 3
-"""Group of geoms that pictures leave out."""
 
 
 def is_urdf(path: Path) -> bool:
