@@ -14,7 +14,8 @@ from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.robot_files import robot_from
 from robbdd_tools.world.robot_report import as_stated, stated
 from world import strangers
-from world.arms import MJCF
+from world.arms import MJCF, URDF
+from world.hollow import write_tote
 
 
 def write(folder: Path, text: str) -> Path:
@@ -133,3 +134,16 @@ def test_the_range_of_a_velocity_servo_is_the_speed_of_its_joint(
     assert "        velocity: (1, 1, 1, 1.5) rad/s" in said
     assert re.search(r"  rot +rotating .* 1\.5 rad/s +", said)
     assert said.count("(assumed)") == 3
+
+
+def test_it_lists_hollow_meshes_and_how_far_closed_faces_stay_apart(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_tote(tmp_path / "tote.obj")
+    finger = '<geometry><box size="0.018 0.008 0.03"/></geometry>'
+    hollow = '<geometry><mesh filename="tote.obj" scale="0.1 0.04 0.1"/></geometry>'
+    path = write(tmp_path, URDF.replace(finger, hollow).replace('lower="0.0"', 'lower="0.006"'))
+    main(["view", "--robot", str(path), "-o", str(tmp_path / "arm.png")])
+    said = capsys.readouterr().out
+    assert "hollow meshes, each of which collides as its convex hull: tote.obj (4.1 times its volume)" in said
+    assert "closed gripper: its faces stay 12 mm apart" in said

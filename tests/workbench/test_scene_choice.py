@@ -228,6 +228,19 @@ def test_a_run_names_the_bodies_of_the_scene_through_which_everything_passes(
 
 
 @pytest.mark.physics
+def test_a_run_names_objects_with_a_hollow_mesh(tidy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_tote(Path("tote.obj"))
+    mesh = '<asset><mesh name="shell" file="tote.obj" scale="0.1 0.15 0.3"/></asset>'
+    body = '<body name="cube"><freejoint/><geom type="mesh" mesh="shell" mass="0.1"/></body>'
+    Path("tote.xml").write_text(f"<mujoco>{mesh}<worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
+    edit("cell.scenex", 'catalog "cube"', "sys path = 'tote.xml'")
+    main(["run", str(tidy), "--scenex", "cell.scenex", "--no-store"])
+    said = capsys.readouterr()
+    (line,) = [line for line in (said.out + said.err).splitlines() if "hollow" in line]
+    assert "'robbdd cut MODEL' cuts it into convex pieces: " in line
+
+
+@pytest.mark.physics
 def test_a_run_names_hollow_meshes(tidy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_tote(Path("tote.obj"))
     mesh = '<asset><mesh name="cabinet" file="tote.obj"/></asset>'

@@ -66,6 +66,8 @@ def test_a_fixed_object_from_a_file_without_a_pose_is_reported(cell: Path) -> No
         "65:10: warning: 'bin' has no pose: place it in the .scenex; its model (from fixed.xml) has no standard place"
         " [pose]"
     ]
+    rewrite(cell, ("sys path = 'fixed.xml'", 'catalog "bin"'), (' map body <poses.top> to "table"', ""))
+    assert found(cell.with_name("tidy.bddx")) == []
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,11 @@ def test_a_wall_may_consist_of_pieces_but_not_of_a_post() -> None:
     assert not with_walls(INSIDE, (*walls(0.1, "ews"), post)).walled
 
 
+def test_a_roof_is_no_wall() -> None:
+    roof = Shape(ShapeKind.BOX, (0.15, 0.1, 0.005), (0.0, 0.1, 0.1))
+    assert not with_walls(INSIDE, (*walls(0.1, "ews"), roof)).walled
+
+
 def test_a_wall_far_from_the_workspace_does_not_count() -> None:
     narrow = Region((0.0, 0.0, 0.06), (0.05, 0.09, 0.05))
     assert not with_walls(narrow, walls(0.1)).walled

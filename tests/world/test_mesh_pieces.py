@@ -148,21 +148,33 @@ def test_a_workspace_in_a_mesh_that_is_cut_is_not_filled(tmp_path: Path) -> None
     assert region.walled
 
 
+@pytest.mark.parametrize("attributes", ['refpos="0.1 0 0.02"', 'refquat="0 1 0 0"', ""])
+def test_pieces_are_where_the_mesh_is(tmp_path: Path, attributes: str) -> None:
+    path = write_model(tmp_path, attributes=attributes)
+    text = path.read_text(encoding="utf-8").replace("<geom", '<frame pos="0.3 0.2 0.1" euler="0 0 30"><geom')
+    path.write_text(text.replace("</body>", "</frame></body>"), encoding="utf-8")
+    whole = extent(compiled(path))
+    cut(path)
+    np.testing.assert_allclose(extent(compiled(path)), whole, atol=4e-3)
+
+
+def extent(model: Any) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Return the lowest and the highest corner (m, world frame) of all shapes that collide."""
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    corners = [
+        data.geom_xpos[geom] + model.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T
+        for geom in range(model.ngeom)
+        if model.geom_contype[geom]
+        for first, count in [(model.mesh_vertadr[model.geom_dataid[geom]], model.mesh_vertnum[model.geom_dataid[geom]])]
+    ]
+    return np.concatenate(corners).min(axis=0), np.concatenate(corners).max(axis=0)
+
+
 def test_a_scaled_mesh_has_scaled_pieces(tmp_path: Path) -> None:
     path = write_model(tmp_path, attributes='scale="2 2 0.5"')
     cut(path)
-    model = compiled(path)
-    data: Any = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    tops = [
-        float((data.geom_xpos[geom] + data.geom_xmat[geom].reshape(3, 3) @ corner)[2])
-        for geom in range(model.ngeom)
-        if model.geom_contype[geom]
-        for corner in model.mesh_vert[model.mesh_vertadr[model.geom_dataid[geom]] :][
-            : model.mesh_vertnum[model.geom_dataid[geom]]
-        ]
-    ]
-    assert max(tops) == pytest.approx(0.4 + HEIGHT / 2, abs=1e-3)
+    assert extent(compiled(path))[1][2] == pytest.approx(0.4 + HEIGHT / 2, abs=1e-3)
 
 
 def test_a_collision_mesh_of_a_urdf_file_collides_as_its_pieces(tmp_path: Path) -> None:
@@ -197,6 +209,18 @@ def colliding(source: ModelSource) -> int:
     spec = prepared_robot(robot_from(source, "env:arm").mjcf)
     assert spec is not None
     return sum(bool(geom.contype or geom.conaffinity) for geom in spec.body("column").geoms)
+
+
+def test_a_collision_mesh_that_is_converted_collides_as_its_pieces(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.load_mesh(write_tote(tmp_path / "tote.obj")).export(tmp_path / "tote.ply")
+    path = tmp_path / "tote.urdf"
+    shape = '<collision><geometry><mesh filename="tote.ply"/></geometry></collision>'
+    path.write_text(f'<robot name="tote"><link name="tote">{shape}</link></robot>', encoding="utf-8")
+    assert list(whole_meshes(path)) == [tmp_path / "tote.ply"]
+    cut_mesh(tmp_path / "tote.ply", THRESHOLD)
+    assert int((read_model(path).compile().geom_contype > 0).sum()) > 4
+    assert whole_meshes(path) == {}
 
 
 def test_a_hollow_link_that_collides_as_its_visual_mesh_is_found(tmp_path: Path) -> None:

@@ -54,11 +54,12 @@ def test_corners_of_their_own_for_each_side_close_a_surface() -> None:
     [
         boxes(0),
         boxes(0, 5).replace("f 1 2 4 3\n", ""),
+        boxes(0, 5, 9).replace("f 1 2 4 3\n", ""),
         "".join(f"g side{number}\nf {' '.join(map(str, side))}\n" for number, side in enumerate(SIDES)) + boxes(0)[6:],
         boxes(0) + "o flat\nv 2 0 0\nv 3 0 0\nv 2 1 0\nf 9 10 11\nf 9 11 10\n",
         "",
     ],
-    ids=["one group", "an open side", "sides", "a flat group", "nothing"],
+    ids=["one group", "an open side", "an open one of three", "sides", "a flat group", "nothing"],
 )
 def test_other_groups_are_parts_of_a_drawing(text: str) -> None:
     assert closed_groups(text.encode()) == ()
