@@ -48,3 +48,15 @@ def test_an_srdf_file_beside_a_urdf_file_is_read_with_it(tmp_path: Path) -> None
     (tmp_path / "arm.srdf").unlink()
     make_fifo(tmp_path / "arm.srdf")
     assert list(model_files(tmp_path / "arm.urdf")) == [tmp_path / "arm.urdf"]
+
+
+def test_meshes_of_packages_and_their_pieces_are_files_of_a_model(tmp_path: Path) -> None:
+    urdf, mesh = tmp_path / "arm" / "urdf" / "arm.urdf", tmp_path / "arm" / "meshes" / "jaw.stl"
+    urdf.parent.mkdir(parents=True)
+    mesh.parent.mkdir()
+    mesh.write_bytes(b"mesh")
+    text = '<robot name="arm"><mesh filename="package://arm/meshes/jaw.stl"/><mesh filename="package://no/one.stl"/></robot>'
+    urdf.write_text(text, encoding="utf-8")
+    assert [one.name for one in model_files(urdf)] == ["arm.urdf", "jaw.stl"]
+    mesh.with_name("jaw.stl.pieces.obj").write_bytes(b"pieces")
+    assert [one.resolve() for one in model_files(urdf)] == [urdf, mesh, mesh.with_name("jaw.stl.pieces.obj")]

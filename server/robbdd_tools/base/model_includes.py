@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from xml.etree import ElementTree
 
 from robbdd_tools.base.files import Unreadable, UnreadableFile, load_bytes, unreadable
+from robbdd_tools.base.model_paths import SCHEMES, mesh_places
 from robbdd_tools.base.source_texts import source_xml
 from robbdd_tools.base.srdf import srdf_files
 
@@ -57,5 +59,11 @@ def _named(path: Path, read: Read) -> Iterator[Path]:
     places = [path.parent, *(path.parent / element.get(name, "") for element in root.iter() for name in FOLDERS)]
     for name in (element.get("file") or element.get("filename") for element in root.iter()):
         if name:
-            found = (place / name.removeprefix("file://") for place in dict.fromkeys(places))
+            found = _in_package(path, name) or [place / name.removeprefix("file://") for place in dict.fromkeys(places)]
             yield from (one for place in found for one in (place, pieces_beside(place)) if os.path.lexists(one))
+
+
+def _in_package(path: Path, name: str) -> list[Path]:
+    """Return the file of a package that a model file names, which is the first one found; nothing for other names."""
+    places = mesh_places(path, name) if name.startswith(SCHEMES) else iter(())
+    return list(islice((one for one in places if os.path.lexists(one)), 1))
