@@ -10,8 +10,8 @@ from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.hand_direction import BETWEEN_FINGERS
+from robbdd_tools.world.mesh_pieces import HIDDEN
 from robbdd_tools.world.model_files import compiled
-from robbdd_tools.world.urdf_files import HIDDEN
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
