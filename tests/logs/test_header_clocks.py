@@ -73,7 +73,21 @@ def test_small_differences_are_delays_and_not_clocks() -> None:
     for tick in range(100):
         clocks.seen("/tf", "cup", WALL + tick * SECOND // 10 + 900_000_000, WALL + tick * SECOND // 10)
     assert of(clocks, WALL) == [WALL]
-    assert clocks.header_time().remarks == ()
+    (remark,) = clocks.header_time().remarks
+    assert remark == (
+        "messages were received 0.900 s after the times in their headers, and those without a header, such as events, "
+        "count when they were received: if this is no delay but a wrong clock, pass --clock /tf=-0.900 (seconds)"
+    )
+
+
+@pytest.mark.parametrize(("ahead", "words"), [(-99, ""), (99, ""), (-101, "0.101 s after"), (101, "0.101 s before")])
+def test_only_long_delays_are_remarked(ahead: int, words: str) -> None:
+    clocks = HeaderClocks()
+    for tick in range(100):
+        clocks.seen("/tf", "cup", WALL + tick * SECOND // 10, WALL + tick * SECOND // 10 + ahead * 1_000_000)
+    remarks = clocks.header_time().remarks
+    assert bool(remarks) is bool(words)
+    assert words in "".join(remarks)
 
 
 def simulated(speed: float) -> list[Message]:

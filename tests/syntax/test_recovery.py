@@ -44,6 +44,11 @@ LOOP = "    for all ( var one in <parts> ) { When: <robot> picks <one> }\n"
         (GIVEN + WHEN + THEN + THEN, "Then", "'Then:' must come after 'When:' or 'for all'"),
         ("    When:\n" + LOOP, "When", "nothing is written between 'When:' and 'for all'"),
         ("    Given:\n" + WHEN, "Given", "nothing is written between 'Given:' and 'When'"),
+        (
+            "    When:\n" + "event <pick-start> occurs" + THEN,
+            "Then",
+            "'When:' needs a behaviour after its events: 'Beh",
+        ),
         ("    When:\n" + "event <pick-start> occurs" + LOOP, "for", "'for all' is written instead of 'When:'"),
     ],
 )

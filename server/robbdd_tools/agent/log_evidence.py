@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.log_arms import find_arms
+from robbdd_tools.agent.log_distances import far_apart
 from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.agent.log_grips import LogGrips, grip_signals
 from robbdd_tools.base.large_arrays import large_array
@@ -111,6 +112,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         stated=tuple(name for name in known if name in cast.objects and frames.is_stated(name)),
         immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
     )
+    remarks += far_apart(trace)
     trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 

@@ -97,8 +97,12 @@ class Frames:
         return [track.times for track in used if not track.static]
 
     def is_stated(self, element: str) -> bool:
-        """Return whether the place of an element is stated, by static transforms or the ``.scenex``, not observed."""
-        return element not in self.of or self._is_fixed(self.of[element])
+        """Return whether the place of an element is stated, by static transforms or the ``.scenex``, not observed.
+
+        What is stated to be on a moving base of an agent, or on the agent, is not observed either: it moves with them.
+        """
+        frame = self.of.get(element)
+        return frame is None or self._is_fixed(frame) or self._is_fixed_to_agent(frame)
 
     def poses(self, element: str, times: FloatArray) -> Poses | None:
         """Return the poses of an element's frame at some times (n,) s; ``None`` if it has none."""
@@ -226,6 +230,15 @@ class Frames:
             words = f"'{frame}' is the base of {agent}, which stands where the .scenex places it"
             self._remarks.append(f"the log has no frame of the world: {words}")
             return
+
+    def _is_fixed_to_agent(self, frame: str) -> bool:
+        agents = [*(self.of[name] for name in self._cast.agents if name in self.of), *self._bases.values()]
+        carrying = {*reached(agents, self._tracks)}
+        while frame in self._tracks and self._tracks[frame].static:
+            frame = self._tracks[frame].parent
+            if frame in carrying:
+                return True
+        return False
 
     def _is_fixed(self, frame: str) -> bool:
         """Return whether a frame never moves relative to the root of the frames."""

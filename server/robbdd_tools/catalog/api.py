@@ -159,8 +159,8 @@ class Evidence(Protocol):
         """Return how far a thing with a joint is open, at each of the n samples."""
         ...
 
-    def need_motion(self, name: str) -> None:
-        """Raise an error for which the monitor returns *unknown* if the motion of an element was not observed."""
+    def travelled(self, name: str, limit: float) -> FloatArray:
+        """Return how long (m) an element's path is since the window began, (n,); *unknown* if errors exceed a limit."""
         ...
 
     def is_immovable(self, name: str) -> bool:
@@ -225,7 +225,7 @@ class Predicate:
     unit_for: UnitChoice | None = None
     set_up: bool = False
     duration: DurationMargin | None = None
-    measured: Literal["nothing", "length", "angle", "speed", "otherwise"] = "otherwise"
+    measured: Literal["nothing", "length", "path", "angle", "speed", "otherwise"] = "otherwise"
     synonyms: tuple[str, ...] = ()
     in_texts: tuple[str, ...] = ()
     pointwise: bool = False

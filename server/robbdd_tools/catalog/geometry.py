@@ -209,14 +209,6 @@ def distance_from_segment(point: FloatArray, start: FloatArray, end: FloatArray)
     return np.linalg.norm(offset - share[:, None] * along, axis=1)
 
 
-def path_length(positions: FloatArray) -> FloatArray:
-    """Return the distance (m) travelled along positions (n, 3) up to each sample, shape (n,), starting at 0."""
-    import numpy as np
-
-    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
 def _outside(local: FloatArray, region: Region) -> FloatArray:
     """Return how far (m) points (n, 3) in a region's frame are beyond each pair of faces, negative inside, (n, 3)."""
     import numpy as np

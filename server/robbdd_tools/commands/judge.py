@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.judging import Judgement
 from robbdd_tools.workbench.log_judging import LogJudgement, LogNames
-from robbdd_tools.workbench.model import load_all
+from robbdd_tools.workbench.model import load_all, read_instances
 from robbdd_tools.workbench.named_logs import named_logs, names_for
 from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.stored import store_at
@@ -42,6 +42,7 @@ class JudgeOptions:
     - ``selection``: selects the scenario that the robot executed in the log.
     - ``names``: the settings for names and times of a log.
     - ``keep``: false if the judgement of a log is not stored.
+    - ``scenex``: files with scene instances for scenarios without an execution that a log is judged by.
     """
 
     run: str
@@ -51,6 +52,7 @@ class JudgeOptions:
     selection: Selection = field(default_factory=Selection)
     names: LogNames = field(default_factory=LogNames)
     keep: bool = True
+    scenex: tuple[Path, ...] = ()
 
 
 def judge(options: JudgeOptions) -> int:
@@ -73,7 +75,7 @@ def _judge(options: JudgeOptions) -> int:
 
 def _judge_log(options: JudgeOptions) -> int:
     model = load_all(options.paths)
-    plan = Plan.of(model, options.selection)
+    plan = Plan.of(model, replace(options.selection, instances=read_instances(options.scenex)))
     specs = plan.scenarios
     names = names_for(model, specs[0], options.names) if len(specs) == 1 else options.names
     return _judge_one(options, plan, Path(options.run), names)

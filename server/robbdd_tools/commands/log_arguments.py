@@ -20,6 +20,8 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--scenario", metavar="NAME", action="append", help=text)
     text = "the values with which the robot executed it: 'robot=panda and target=cube1'"
     log.add_argument("--where", metavar="EXPRESSION", help=text)
+    text = "judge scenarios without an execution by the models and places in this .scenex for their scene; repeats"
+    log.add_argument("--scenex", metavar="FILE", type=Path, action="append", help=text)
     text = "the frame of an element in the log (default: the frame of its name); repeats"
     log.add_argument("--frame", metavar="ELEMENT=FRAME", type=_pair, action="append", help=text)
     text = "the frame of the base of an arm's model (default: the driver's usual name, or the .scenex); repeats"
@@ -84,7 +86,8 @@ def judge_options(options: argparse.Namespace) -> JudgeOptions:
     selection = Selection(options.scenario or (), options.where)
     # A single argument is a model, whose executions name logs.
     run, paths = (options.run, (options.path, *options.more)) if options.path else ("", (Path(options.run),))
-    return JudgeOptions(run, paths, options.store, options.json, selection, names, keep=not options.no_store)
+    keep, scenex = not options.no_store, tuple(options.scenex or ())
+    return JudgeOptions(run, paths, options.store, options.json, selection, names, keep, scenex)
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -129,6 +129,8 @@ def bound_of(predicate: Predicate, arguments: Arguments, trace: Trace, regions: 
             return trace.uncertain.get(kind, f"the uncertainty of {EXAMPLES[kind]}")
         case "length":
             return _length(predicate, arguments, trace, regions) + predicate.error
+        case "path":
+            return _path(predicate, arguments, trace, regions)
 
 
 def _length(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float:
@@ -138,19 +140,20 @@ def _length(predicate: Predicate, arguments: Arguments, trace: Trace, regions: R
             filler = arguments[slot.name]
             words = (filler,) if isinstance(filler, str) else filler
             carriers = [carrier for word in words for carrier in _carriers(word, regions)]
-            found.append(max((error_of(name, trace) for name in carriers), default=0.0))
-    largest = max(trace.uncertain.get(OTHERS, 0.0), *(error_of(name, trace) for name in trace.names), 0.0)
+            found.append(max((trace.position_error(name) for name in carriers), default=0.0))
+    largest = max(trace.uncertain.get(OTHERS, 0.0), *(trace.position_error(name) for name in trace.names), 0.0)
     return sum((*found, largest, largest)[: max(len(found), 2)])
+
+
+def _path(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> float:
+    """Return the error of the length of a target's path, as ``monitor.paths.length_beyond_errors`` measures it."""
+    target = next(slot.name for slot in reversed(predicate.slots))
+    return 4 * max(trace.position_error(name) for name in _carriers(str(arguments[target]), regions))
 
 
 def _carriers(name: str, regions: Regions) -> list[str]:
     """Return the objects that carry a workspace, or else the element itself."""
     return [carrier for carrier, _ in regions[name]] if name in regions else [name]
-
-
-def error_of(element: str, trace: Trace) -> float:
-    """Return the largest error of the position of an element, m."""
-    return trace.uncertain.get(element, trace.uncertain.get(OTHERS, 0.0))
 
 
 def _narrowed(verdict: Verdict, bound: float | str) -> Verdict:

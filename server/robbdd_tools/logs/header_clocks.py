@@ -17,6 +17,8 @@ MIN_OFFSET = 1_000_000_000
 """Two clocks count as different if they differ by more than this (ns). Smaller differences may be delays."""
 MIN_DRIFT = 100_000_000
 """If the difference of two clocks changes by more than this (ns) during a log, it counts as a drift."""
+LONG_DELAY = 100_000_000
+"""A remark names a difference of two clocks of more than this (ns) that may be a delay."""
 MIN_STEP = 20_000_000
 """A clock that is set back by less than this (ns) is not noticed."""
 ORDERED = 20
@@ -113,6 +115,7 @@ class HeaderClocks:
         every = [times - headers for source, (times, headers) in known.items() if source not in others]
         offset = int(np.median(np.concatenate(every)))
         if abs(offset) <= MIN_OFFSET:
+            remarks += [_delay_words(offset, reference[0])] if abs(offset) > LONG_DELAY else []
             return HeaderTime(unusable=unusable, remarks=tuple(remarks))
         words = f"the time of reception is {offset / 1e9:.3f} s ahead of the headers, and was corrected"
         return HeaderTime(offset, unusable=unusable, remarks=(words, *remarks))
@@ -245,6 +248,13 @@ def _grouped(found: Mapping[Source, float]) -> list[tuple[str, str, float]]:
 def _jump_words(_: str, called: str, back: float) -> str:
     words = f"the headers of {called} jump back by {back / 1e9:.3f} s, so they are not used"
     return f"{words}: cut the log where a simulator was reset or a clock was set, and judge the parts"
+
+
+def _delay_words(offset: int, topic: str) -> str:
+    side = "after" if offset > 0 else "before"
+    words = f"messages were received {abs(offset) / 1e9:.3f} s {side} the times in their headers"
+    words += ", and those without a header, such as events, count when they were received"
+    return f"{words}: if this is no delay but a wrong clock, pass --clock {topic}={-offset / 1e9:.3f} (seconds)"
 
 
 def _other_words(topic: str, called: str, ahead: float, reference: str) -> str:

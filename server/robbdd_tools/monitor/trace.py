@@ -151,6 +151,10 @@ class Trace:
         """Return the index of a body in ``names``. Raises ``KeyError`` if the trace does not contain it."""
         return self._index[name]
 
+    def position_error(self, name: str) -> float:
+        """Return the largest error (m) of the position of an element in a log; 0 if none is stated."""
+        return self.uncertain.get(name, self.uncertain.get(OTHERS, 0.0))
+
     def event_time(self, name: str, iteration: int = 0) -> float | None:
         """Return the time of the first occurrence of an event, or ``None``.
 

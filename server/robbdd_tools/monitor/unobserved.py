@@ -27,6 +27,13 @@ def no_grip(agent: str, unseen: str) -> str:
     )
 
 
+def path_of_errors(name: str, length: float, away: float) -> str:
+    """Return why the length (m) of a path is unknown; ``away`` is the largest distance (m) from its begin."""
+    went = f"the observed positions of {name} add up to a path of {length:.2f} m"
+    words = f"{went}, but it was never more than {1000 * away:.0f} mm from where it began"
+    return f"{words}: state the errors of the measurements, as in --uncertainty '{name.rpartition(':')[2]}=3 mm'"
+
+
 def gap_around(times: FloatArray, unseen: NDArray[np.bool_], time: float) -> str:
     """Return in words the gap in observations that contains a time (s); ``times`` (n,) s and ``unseen`` (n,)."""
     known = times[~unseen]

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from robbdd_tools.monitor.paths import length_beyond_errors, path_length
 from robbdd_tools.monitor.time import TOLERANCE, Window
-from robbdd_tools.monitor.unobserved import Unobserved, gap_around, no_grip
+from robbdd_tools.monitor.unobserved import Unobserved, gap_around, no_grip, path_of_errors
 from robbdd_tools.monitor.without_physics import need_contacts
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ class WindowEvidence:
 
         At the first sample, it is the mean velocity until the next sample. In a trace of one sample, it is NaN.
         """
-        self.need_motion(name)
+        self._need_motion(name)
         rows, extra = self._with_neighbour()
         path, times = self.trace.positions[rows, self.trace.column(name)], self.trace.times[rows]
         if len(times) < 2:
@@ -76,7 +77,7 @@ class WindowEvidence:
         ``KeyError`` and ``Unobserved``.
         """
         need_contacts(self.trace.settings)
-        self.need_motion(name)
+        self._need_motion(name)
         rows, extra = self._with_neighbour()
         turns, times = self._turns(name, rows), self.trace.times[rows]
         if len(times) < 2:
@@ -88,6 +89,22 @@ class WindowEvidence:
         steps = 4.0 * np.arcsin(np.clip(chords / 2.0, 0.0, 1.0)) / np.diff(times)
         speeds = steps if extra else np.concatenate([steps[:1], steps])
         return self._observed(name, speeds[: len(self.times), None], self.times)[:, 0]
+
+    def travelled(self, name: str, limit: float) -> FloatArray:
+        """Return the length of an element's path since the window began, m, shape (n,).
+
+        In a log with stated errors, they do not lengthen the path (``length_beyond_errors``). Raises ``KeyError`` and
+        ``Unobserved``, also if no errors are stated and the path is longer than ``limit`` although the element was
+        never farther than ``limit`` from where it began: errors of the measurements add up along a path.
+        """
+        self._need_motion(name)
+        positions = self.position(name)
+        if error := self.trace.position_error(name):
+            return length_beyond_errors(positions, error)
+        found, away = path_length(positions), float(np.linalg.norm(positions - positions[0], axis=1).max())
+        if self.trace.log and found[-1] > limit >= away:
+            raise Unobserved(path_of_errors(name, float(found[-1]), away))
+        return found
 
     def _with_neighbour(self) -> tuple[slice, bool]:
         """Return the window's rows and a row before them or, at the begin of the trace, after them; true if before."""
@@ -189,7 +206,7 @@ class WindowEvidence:
             raise Unobserved(record)
         return replace(record, positions=record.positions[self._rows])
 
-    def need_motion(self, name: str) -> None:
+    def _need_motion(self, name: str) -> None:
         """Raise ``Unobserved`` if a log states the place of an element instead of observing it."""
         if name in self.trace.stated:
             words = f"the log does not observe {name}: its place is that of a static transform or of the .scenex"

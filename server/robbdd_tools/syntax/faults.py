@@ -52,6 +52,9 @@ _PLACES = {
     "Then": "'Then:' must come after 'When:' or 'for all'",
 }
 """Part of a scenario → message on its required order. Users often get the order wrong."""
+_NO_BEHAVIOUR = (
+    "'When:' needs a behaviour after its events: 'Behaviour name { duration: … <agent> … }' or '<agent> picks …'"
+)
 _UNJOINED = "clauses joined by '{0}' need parentheses around all of them: '( … {0} … )'"
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
 _EMPTY = re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z")
@@ -139,8 +142,10 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
     word = None if part is None else part[part.lastindex or 0]
     if part is None or word is None or word in rejected.expected.literals:
         return None
-    start = part.start()
-    return SyntaxFault(Span(start, start + len(word)), _PLACES["for all" if word == "for" else word])
+    span = Span(part.start(), part.start() + len(word))
+    if word == "Then" and {"Behaviour", "event"} <= rejected.expected.literals:
+        return SyntaxFault(span, _NO_BEHAVIOUR)
+    return SyntaxFault(span, _PLACES["for all" if word == "for" else word])
 
 
 def _without_unit(text: str, rejected: Rejected) -> SyntaxFault | None:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.pose import Pose
     from robbdd_tools.world.staging import Staging
 
+MAX_LISTED = 12
 PEDESTAL = "pedestal"
 """Name of the table that is added to a scene without fixed objects."""
 
@@ -216,9 +217,10 @@ def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
 
 
 def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
-    known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
+    known = sorted(prefix for group in prefixes for prefix in group)
+    words = f"{', '.join(known[:MAX_LISTED])}{' …' if len(known) > MAX_LISTED else ''}"
     return (
-        f"there is no model for {kind} '{name}': its name, or its set's, must contain one of {known}; "
+        f"there is no model for {kind} '{name}': its name, or its set's, must contain one of {words}; "
         "or give it a model in a .scenex that --scenex or an execution of a .bddx names"
     )
 

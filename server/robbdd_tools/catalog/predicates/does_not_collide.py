@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.catalog.geometry import carriers_of, limit_of, path_length
+from robbdd_tools.catalog.geometry import carriers_of, limit_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -30,12 +30,10 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
     agent, carriers = str(arguments["agent"]), carriers_of(evidence, str(arguments["target"]))
     by_force, by_way = _split(evidence, carriers)
-    for carrier in by_way:
-        evidence.need_motion(carrier)
     force_limit = limit_of(evidence, carriers, "force_limit") or FORCE_LIMIT
     way_limit = limit_of(evidence, carriers, "displacement_limit") or LIMIT
     forces = [force_limit - evidence.force(agent, carrier) for carrier in by_force]
-    ways = [way_limit - path_length(evidence.position(carrier)) for carrier in by_way]
+    ways = [way_limit - evidence.travelled(carrier, way_limit) for carrier in by_way]
     if forces and ways:
         return np.min([*(one / force_limit for one in forces), *(one / way_limit for one in ways)], axis=0)
     return np.min(forces or ways, axis=0)
@@ -80,4 +78,5 @@ DOES_NOT_COLLIDE = Predicate(
     ),
     evaluate=margin,
     unit_for=unit,
+    measured="path",
 )
