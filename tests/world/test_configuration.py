@@ -231,7 +231,7 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
         ([("env:bolt", "mass", "1")], "'env:bolt', which should have mass = 1, is not in the scene"),
         ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' should have mass = 1 and 2"),
         ([(CUBE, "position_ahead", "1.5")], "no part of 'env:bench', where 'env:cube1' should be"),
-        ([(CUBE, "grip_force", "5")], "'env:cube1' has no grip_force: it applies to an agent of the catalog"),
+        ([(CUBE, "grip_force", "5")], "'env:cube1' has no grip_force: it applies to an agent"),
         ([(BIN, "size_scale", "1.1")], "'env:bin1' has no size_scale: it applies to an object of the catalog to grasp"),
         ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' should be"),
     ],

@@ -150,9 +150,9 @@ _EVERY = (
     Setting(
         "grip_force",
         "N",
-        "an agent of the catalog",
+        "an agent",
         0.1,
-        50.0,
+        200.0,
         "largest force of each finger, or pull of a cup's vacuum",
     ),
     Setting(

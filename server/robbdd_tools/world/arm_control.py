@@ -11,6 +11,7 @@ from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.clearance import Clearance
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.grip_force import slip_force
 from robbdd_tools.world.gripper import Step, gripper_of
 from robbdd_tools.world.motion import Motion, ToolPose, frame_of, plan, plan_joints, plan_through, present_pose
 from robbdd_tools.world.parking import parking_pose
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 SLIPPED = 3
 """The gripper has lost the object after this many ticks in a row without grip."""
+ACCELERATED = 1.5
+"""On its way, a part pulls at the fingers with at most its weight times this."""
 HIT_BEFORE = round(0.5 / TICK)
 """A collision at most this many ticks ago may have torn an object out of the gripper."""
 DIP = 0.05
@@ -151,7 +154,18 @@ class ArmControl:
         forces, held = self.simulation.forces, self.held or ""
         hit = forces.hit_since(forces.row - HIT_BEFORE, held)
         after = f" after {held} hit {', '.join(hit)}" if hit else ""
-        return BehaviourError(f"gripper lost {held} at {self.time:.2f} s{after}")
+        return BehaviourError(f"gripper lost {held} at {self.time:.2f} s{after}{self._if_heavy(held)}")
+
+    def _if_heavy(self, held: str) -> str:
+        """Return in words that an object is too heavy for the friction of the fingers, if this may be so."""
+        model, robot = self.simulation.model, self.robot
+        if held not in self.simulation.world.cast.objects:
+            return ""
+        slips = slip_force(model, robot.name, robot.model, held)
+        weight = float(model.body(held).mass[0] * np.linalg.norm(model.opt.gravity))
+        if slips is None or ACCELERATED * weight < slips:
+            return ""
+        return f": its weight is {weight:.3g} N, and its friction in the fingers bears {slips:.3g} N"
 
     def wait(self, ticks: int) -> Step:
         """Stay in place."""

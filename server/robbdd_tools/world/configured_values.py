@@ -10,7 +10,7 @@ from robbdd_tools.catalog.object_settings import is_resizable, is_scalable
 from robbdd_tools.catalog.settings import NORMAL, Numbers, written
 from robbdd_tools.catalog.timetables import timetable_of
 from robbdd_tools.world.belts import belt_speed, belts_of
-from robbdd_tools.world.grip_force import grip_force, has_known_force
+from robbdd_tools.world.grip_force import grip_force
 from robbdd_tools.world.owners import joint_of_part
 from robbdd_tools.world.scene_configuration import CONTROLLER
 
@@ -60,8 +60,8 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "drop_height"] = cast.drops[name]
         follow = (timetable_of(robot.model.name).follow_speed,)
         settings[name, "follow_speed"] = cast.chosen.get((name, "follow_speed"), follow)
-        if has_known_force(robot.model):
-            settings[name, "grip_force"] = (grip_force(model, name, robot.model),)
+        if (force := grip_force(model, name, robot.model)) is not None:
+            settings[name, "grip_force"] = (force,)
         settings[name, "contact_time"] = (float(model.geom_solref[robot.pads[0], 0]),)
         settings[name, "attach_distance"] = (float(model.geom_gap[robot.pads[0]]),)
     # A seed may be configured for any element, such as the scene.

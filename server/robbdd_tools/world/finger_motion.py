@@ -22,6 +22,7 @@ class FingerMotion:
       beyond the tool; empty if the fingers slide.
     - ``one_sided``: whether only one jaw moves, along the tool's y axis: the tool is at the surface of the other one.
     - ``narrowest``: distance (m) of the faces when the gripper is closed; 0 if they meet.
+    - ``lever``: change of the actuator's length (m, rad) per metre that a finger moves, on average.
     """
 
     rate: float = 1.0
@@ -31,6 +32,7 @@ class FingerMotion:
     sweep: tuple[tuple[float, float], ...] = ()
     one_sided: bool = False
     narrowest: float = 0.0
+    lever: float = 1.0
 
     def reach(self, width: float) -> float:
         """Return how far (m) the fingers reach beyond the tool at most until they have closed to a width (m)."""

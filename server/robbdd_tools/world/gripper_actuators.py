@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.executable import ModelEntry
+from robbdd_tools.world.coupled_joints import stiffen
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.gripper_faces import length_of
@@ -17,9 +18,13 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ArmModel, ModelSource
 
 GRIP_FORCE = 15.0
-"""Force (N) of each finger of a gripper whose file has no actuator."""
-GRIP_STIFFNESS, GRIP_DAMPING = 3000.0, 60.0
-"""Position and velocity gains (N/m, N s/m) of an added actuator, times the squared length for a rotating finger."""
+"""Force (N) of each finger of a gripper whose file has no actuator and states no effort."""
+STRONGEST = 200.0
+"""Efforts with which a finger would press harder (N) stand for none: electric grippers of such arms are weaker."""
+YIELD, GRIP_TIME = 0.005, 0.02
+"""An added servo presses with its whole force from this error (m) on, and is damped with this time constant (s)."""
+ROTOR = 1.6
+"""The inertia of a finger with an added servo is at least its stiffness times the squared time step times this."""
 SUCTION_FORCE = 42.0
 """Pull (N) of a suction cup whose file has no actuator: the same as of the catalog's cup."""
 
@@ -36,6 +41,10 @@ class GripperParts:
         self.arm = arm
         self.palm = palm
         self._note = note
+        self.added: set[str] = set()
+        """Names of added actuators."""
+        self.changes: list[str] = []
+        """Assumptions about the gripper, as lines for a report."""
 
     @property
     def bodies(self) -> list[Any]:
@@ -135,10 +144,9 @@ class GripperActuator:
         if joint.type == mujoco.mjtJoint.mjJNT_HINGE:
             lever = max(0.02, length_of(self._parts.compiled(), str(joint.name)))
         servo = self._spec.add_actuator(name=joint.name, target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-        servo.set_to_position(kp=GRIP_STIFFNESS * lever**2, kv=GRIP_DAMPING * lever**2)
-        servo.forcerange = [-GRIP_FORCE * lever, GRIP_FORCE * lever]
-        servo.forcelimited = True
+        _strengthen(servo, GRIP_FORCE * lever, YIELD / lever)
         servo.ctrlrange, servo.ctrllimited = joint.range, True
+        self._parts.added.add(str(servo.name))
         return servo
 
     def _vacuum(self, name: str) -> Any:
@@ -174,6 +182,40 @@ class GripperActuator:
             first.gainprm, first.biasprm = first.gainprm * share, first.biasprm * share
             first.forcerange = first.forcerange * share
         return first
+
+
+def press(parts: GripperParts, actuator: Any, lever: float, faces: int) -> None:
+    """Let each finger of a gripper press with the effort that its file states, if this program has added the servo.
+
+    The joint moves by ``lever`` (1, rad/m) per metre of a finger's way, and drives ``faces`` gripping faces. Without a
+    plausible effort, ``GRIP_FORCE`` is assumed, and the report says so.
+    """
+    if actuator.name not in parts.added:
+        return
+    joint = parts.spec.joint(str(actuator.target))
+    stated = float(joint.actfrcrange[1]) * lever
+    force = stated if 0.0 < stated <= STRONGEST else GRIP_FORCE
+    if force != stated:
+        words = "the file states no effort of its fingers"
+        if stated > 0.0:
+            words = (
+                f"with the effort in the file, the fingers would press with {stated:.3g} N, more than such grippers do"
+            )
+        parts.changes.append(f"{words}: the grip is assumed")
+    _strengthen(actuator, faces * force / lever, YIELD * lever)
+    # The force of all fingers acts through this joint.
+    joint.actfrcrange, joint.actfrclimited = [0.0, 0.0], False
+    rotor = ROTOR * float(actuator.gainprm[0]) * float(parts.spec.option.timestep) ** 2
+    ties = [one for one in parts.spec.equalities if one.type == mujoco.mjtEq.mjEQ_JOINT and one.name2 == joint.name]
+    stiffen(parts.spec, [str(one.name1) for one in ties])
+    for finger in (joint, *(parts.spec.joint(str(one.name1)) for one in ties)):
+        finger.armature = max(float(finger.armature), rotor)
+
+
+def _strengthen(servo: Any, force: float, error: float) -> None:
+    """Set the largest force (N, N m) of a position servo, which it exerts from an ``error`` (m, rad) on."""
+    servo.set_to_position(kp=force / error, kv=GRIP_TIME * force / error)
+    servo.forcerange, servo.forcelimited = [-force, force], True
 
 
 def gripping_face(spec: Any, source: ModelSource, name: str) -> Any:

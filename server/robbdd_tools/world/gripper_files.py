@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,8 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.finger_opening import Opening
-from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber
+from robbdd_tools.world.finger_sweep import joints_beside, lever_of, move_alone, swept
+from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber, press
 from robbdd_tools.world.gripper_faces import MOVES, extent, gap, meeting_faces
 from robbdd_tools.world.hand_direction import finger_frame, jaw_frame, outwards
 from robbdd_tools.world.mesh_pieces import CUT
@@ -22,10 +22,6 @@ from robbdd_tools.world.model_meshes import hollow_meshes
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
-SETTLING, STILL = 5000, 1e-3
-"""A gripper opens or closes within this many steps of 2 ms; joints slower than this (rad/s, m/s) are at rest."""
-BETWEEN = 0.02
-"""A state of a closing gripper is recorded each time a joint has moved by more than this (rad, m)."""
 CONTRADICTION = 0.25
 """A stated stroke may differ from the measured one by this share."""
 SLACK = 1e-6
@@ -48,6 +44,7 @@ class FoundGripper:
       reach beyond the tool.
     - ``one_sided``: whether the second face does not move: one jaw closes on the hand.
     - ``narrowest``: distance (m) of the faces when the gripper is closed.
+    - ``lever``: change of the actuator's length (m, rad) per metre that a finger moves.
     - ``middle``, ``across``, ``ahead``: the place (m) between the tips of the closed fingers, the closing direction,
       and the direction out of the hand, in the frame of the palm, shape (3,) each.
     """
@@ -67,6 +64,7 @@ class FoundGripper:
     sweep: tuple[tuple[float, float], ...] = ()
     one_sided: bool = False
     narrowest: float = 0.0
+    lever: float = 1.0
 
     @property
     def pads(self) -> tuple[str, ...]:
@@ -180,11 +178,11 @@ class GripperReader:
         model.opt.timestep = 0.002
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        places, speeds = self._fixed(model)
+        places, speeds = joints_beside(self._parts, model)
         data.ctrl[model.actuator(actuator.name).id] = control
         try:
             with strict(model, data):
-                step = _move_alone(model, data, places, speeds)
+                step = move_alone(model, data, places, speeds)
         except SimulationError as error:
             raise self._parts.error(f"cannot be simulated: {error}") from error
         self._settling = max(self._settling, step * float(model.opt.timestep))
@@ -220,12 +218,15 @@ class GripperReader:
         if one_sided:
             middle = middle - opening.to_second(states[closed]) * across
             opening = Opening(self._parts.spec, faces, middle, ahead)
-        sweep = tuple(self._sweep(model, actuator, opening, (states[opened], closed), (ahead, depth)))
+        sweep = swept(self._parts, (model, actuator), opening, (states[opened], closed), (ahead, depth))
         widest = opening.at(states[opened])
         if one_sided:
-            widest = max([widest, *(width for width, _ in sweep)])
+            widest = max([widest, *(one.width for one in sweep)])
         stroke = self._stroke(widest)
-        travel = (widest - max(0.0, gaps[closed])) / (1 if one_sided else 2)
+        moving = 1 if one_sided else 2
+        travel = (widest - max(0.0, gaps[closed])) / moving
+        lever = moving * lever_of(model, actuator, ends, (widest, max(0.0, gaps[closed])), sweep)
+        press(self._parts, actuator, lever, moving)
         return FoundGripper(
             GripperKind.PARALLEL,
             str(actuator.name),
@@ -239,49 +240,11 @@ class GripperReader:
             turn.T @ (middle - place),
             turn.T @ across,
             turn.T @ ahead,
-            sweep,
+            tuple((one.width, one.beyond) for one in sweep),
             one_sided,
             max(0.0, gaps[closed]),
+            lever,
         )
-
-    def _sweep(
-        self,
-        model: Any,
-        actuator: Any,
-        opening: Opening,
-        way: tuple[FloatArray, float],
-        tool: tuple[FloatArray, float],
-    ) -> Iterator[tuple[float, float]]:
-        """Yield the opening (m) and how far (m) the fingers reach beyond the tool, from open to closed.
-
-        ``way`` holds the positions of all joints when open, and the value that closes the gripper. ``tool`` holds the
-        direction out of the hand, and how far the tool is along it. Sliding fingers yield nothing: they always reach
-        equally far.
-        """
-        if not any(joint.type == mujoco.mjtJoint.mjJNT_HINGE for joint in self._parts.joints):
-            return
-        own = {str(body.name) for body in self._parts.bodies[1:]}
-        shapes = [
-            str(model.geom(geom).name)
-            for geom in range(model.ngeom)
-            if str(model.body(int(model.geom_bodyid[geom])).name) in own
-            and (model.geom_contype[geom] or model.geom_conaffinity[geom])
-        ]
-        data = mujoco.MjData(model)
-        data.qpos[:] = way[0]
-        data.ctrl[model.actuator(actuator.name).id] = way[1]
-        places, speeds = self._fixed(model)
-        for state in _states_on_the_way(model, data, places, speeds):
-            data.qpos[:] = state
-            mujoco.mj_kinematics(model, data)
-            lowest = max(extent(model, data, name, tool[0])[1] for name in shapes)
-            yield opening.at(state), lowest - tool[1]
-
-    def _fixed(self, model: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the addresses of the positions and speeds of all joints except the gripper's."""
-        behind = {str(joint.name) for joint in self._parts.joints}
-        fixed = [j for j in range(model.njnt) if str(model.joint(j).name) not in behind]
-        return model.jnt_qposadr[fixed], model.jnt_dofadr[fixed]
 
     def _cup(self, actuator: Any) -> FoundGripper:
         body = self._parts.spec.body(str(actuator.target))
@@ -317,29 +280,3 @@ class GripperReader:
             turn.T @ axes[:, 0],
             turn.T @ axis,
         )
-
-
-def _states_on_the_way(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> list[FloatArray]:
-    """Return joint positions about ``BETWEEN`` apart until the gripper is at rest; the other joints stay in place."""
-    start = data.qpos[places].copy()
-    found = [data.qpos.copy()]
-    for step in range(SETTLING):
-        mujoco.mj_step(model, data)
-        data.qpos[places], data.qvel[speeds] = start, 0.0
-        if np.abs(data.qpos - found[-1]).max() > BETWEEN:
-            found.append(data.qpos.copy())
-        elif step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
-            break
-    return [*found, data.qpos.copy()]
-
-
-def _move_alone(model: Any, data: Any, places: FloatArray, speeds: FloatArray) -> int:
-    """Step until the gripper is at rest; return the last step. ``places`` and ``speeds`` address joints that stay."""
-    start = data.qpos[places].copy()
-    step = 0
-    for step in range(SETTLING):
-        mujoco.mj_step(model, data)
-        data.qpos[places], data.qvel[speeds] = start, 0.0
-        if step > SETTLING / 10 and np.abs(data.qvel).max(initial=0.0) < STILL:
-            break
-    return step

@@ -117,6 +117,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     parts = GripperParts(spec, source, arm, str(chain[-1].name), semantics.note(stated, arm))
     parts.name_geoms()
     gripper = GripperReader(parts).read()
+    changes += parts.changes
     tool = tool_of(spec, source, arm.tool, gripper, chain[-1])
     velocity = arm.velocity or velocity_limits(source, spec, joints, SPEED)
     if followers and not arm.velocity:
@@ -158,6 +159,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
         gripper.sweep,
         gripper.one_sided,
         gripper.narrowest,
+        gripper.lever,
     )
     set_finger_motion(key, motion)
     limits = (float(model.jnt_actfrcrange[model.joint(joint).id, 1]) for joint in joints)

@@ -17,6 +17,7 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
+from robbdd_tools.world.grip_force import grip_force
 from robbdd_tools.world.mesh_pieces import CUT
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import load, path_of, velocity_limits
@@ -68,6 +69,8 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
         f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'across' if is_cup else 'wide'}"
     )
+    if (force := grip_force(model, name, robot)) is not None:
+        yield f"grip: {force:.3g} N {'of vacuum' if is_cup else 'with each finger'}"
     if finger_motion(robot).narrowest > SAME:
         yield f"closed gripper: its faces stay {1000 * finger_motion(robot).narrowest:.0f} mm apart"
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
