@@ -243,3 +243,15 @@ def test_of_ten_planted_errors_nearly_all_are_reported_with_hardly_a_follow_up()
     assert planted == 600
     assert reported / planted >= 0.95, reported
     assert followed / planted <= 0.1, followed
+
+
+@pytest.mark.parametrize("after", [", after <place-end>", " after <place-end>"])
+def test_a_comma_before_whenever_is_removed(after: str) -> None:
+    """In English, 'whenever' often has a comma before it."""
+    clause = "holds(<part> is at rest, whenever <part> is held by <robot>"
+    text = TEMPLATE.replace(THEN, f"    Then:\n        still: {clause}{after})\n")
+    fault = parse_declaration("bdd", text).faults[0]
+    assert fault.message.startswith("no comma comes before 'whenever'")
+    assert fault.fix is not None
+    assert text[: fault.fix.span.start].endswith("is at rest")
+    assert text[fault.fix.span.end :].startswith(" whenever")

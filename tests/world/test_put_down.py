@@ -150,11 +150,14 @@ def test_without_a_roomy_place_on_a_table_any_is_taken() -> None:
     assert len(places(world(crowd, **balls), BENCH_WS)) == 49
 
 
-def test_a_table_out_of_reach_has_no_place() -> None:
-    simulation = world()
+def test_whether_a_far_place_is_reached_is_up_to_the_arm() -> None:
+    """The usual area before a robot ends 0.6 m ahead of it; here, the table begins 0.65 m ahead."""
+    simulation = world(**CLEAR)
     robot = simulation.robots[PANDA]
-    robot.base = replace(robot.base, position=(-5.0, 0.0, 0.15))
-    assert list(targets(simulation, robot, CUBE, BENCH_WS)) == []
+    robot.base = replace(robot.base, position=(-0.65, 0.0, 0.15))
+    found = [target.position for target in targets(simulation, robot, CUBE, BENCH_WS)]
+    assert len(found) == 49
+    assert min(x for x, _, _ in found) - robot.base.position[0] > 0.6
 
 
 def test_places_behind_a_robot_are_left_out() -> None:

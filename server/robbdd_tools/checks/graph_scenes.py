@@ -45,7 +45,7 @@ def _without_model(site: GraphSite) -> Iterator[Diagnostic]:
             if element not in modelled and not _fits(site, element):
                 found[element] = found.get(element, False) or element in used
     for element, is_used in found.items():
-        message = without_model([site.local_name(element)], [], {site.model.kinds[element]}, is_used=is_used)
+        message = without_model([site.local_name(element)], {site.model.kinds[element]}, is_used=is_used)
         yield site.finding(element, NO_MODEL, message, Severity.WARNING if is_used else Severity.INFORMATION)
 
 

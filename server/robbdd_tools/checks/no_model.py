@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 CODE = "no-model"
+MAX_LISTED = 8
 Key = tuple[str, str]
 
 
@@ -159,30 +160,29 @@ def _keys(gap: Gap) -> set[Key]:
 def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[Diagnostic]:
     named = {gap.span: [_local(element) for element in gap.elements if element.key in keys] for gap in gaps}
     for gap in gaps:
-        others = [name for span, names in named.items() if span != gap.span for name in names]
         kinds = {element.kind for element in gap.elements}
-        message = without_model(named[gap.span], others, kinds, is_used=severity is Severity.WARNING)
+        message = without_model(named[gap.span], kinds, is_used=severity is Severity.WARNING)
         uri = gap.scene.uri
         related = tuple(Related(uri, other.span, "no model fits this name") for other in gaps if other.span != gap.span)
         yield Diagnostic(uri, gap.span, severity, CODE, message, related)
 
 
-def without_model(own: list[str], others: list[str], kinds: Set[str], *, is_used: bool) -> str:
-    """Return the message on elements of some kinds without a model. ``others`` are reported elsewhere."""
+def without_model(own: list[str], kinds: Set[str], *, is_used: bool) -> str:
+    """Return the message on elements of some kinds without a model."""
     message = f"no model fits the name {listed(own)}"
-    if others:
-        message += f" (nor {', '.join(others)})"
     if not is_used:
         return f"{message}: no scenario uses it, so runs omit it"
-    message += f": it has none of the words {_words(kinds)}; give it another name, or a model in a .scenex"
+    message += f": it has none of the catalog's words ({_words(kinds)}); give it another name, or a model in a .scenex"
     return f"{message} that --scenex or an execution of a .bddx names"
 
 
 def _words(kinds: Set[str]) -> str:
+    """Return the first words by which the catalog's models of some kinds are found, of each model one."""
     catalog = load_catalog()
     models = [*(catalog.objects.values() if "object" in kinds else ())]
     robots = [*(catalog.agents if "agent" in kinds else ())]
-    return ", ".join(sorted({word for model in (*models, *robots) for word in model.prefixes}))
+    words = sorted({model.prefixes[0] for model in (*models, *robots) if model.prefixes})
+    return f"{', '.join(words[:MAX_LISTED])}{', …' if len(words) > MAX_LISTED else ''}"
 
 
 def _local(element: Element) -> str:

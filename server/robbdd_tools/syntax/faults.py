@@ -52,6 +52,7 @@ _PLACES = {
     "Then": "'Then:' must come after 'When:' or 'for all'",
 }
 """Part of a scenario → message on its required order. Users often get the order wrong."""
+_WHENEVER = re.compile(r"whenever\b")
 _NO_BEHAVIOUR = (
     "'When:' needs a behaviour after its events: 'Behaviour name { duration: … <agent> … }' or '<agent> picks …'"
 )
@@ -99,6 +100,7 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     if joining is not None:
         return SyntaxFault(joining, _UNJOINED.format(text[joining.start : joining.end]))
     explaining = (
+        _comma_before_whenever,
         phrase_fault,
         behaviour_fault,
         foreign_unit,
@@ -146,6 +148,18 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
     if word == "Then" and {"Behaviour", "event"} <= rejected.expected.literals:
         return SyntaxFault(span, _NO_BEHAVIOUR)
     return SyntaxFault(span, _PLACES["for all" if word == "for" else word])
+
+
+def _comma_before_whenever(text: str, rejected: Rejected) -> SyntaxFault | None:
+    """Return the fault of a condition that is written as a time constraint: in English, it often has a comma."""
+    if not _WHENEVER.match(text, rejected.offset):
+        return None
+    comma = len(text[: rejected.offset].rstrip()) - 1
+    if comma < 0 or text[comma] != ",":
+        return None
+    span = Span(comma, comma + 1)
+    message = "no comma comes before 'whenever': <predicate> whenever <condition>, <time constraint>"
+    return SyntaxFault(span, message, SyntaxFix(span, ""))
 
 
 def _without_unit(text: str, rejected: Rejected) -> SyntaxFault | None:

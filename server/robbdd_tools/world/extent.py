@@ -19,6 +19,8 @@ RISES, BESIDE = 0.01, 0.03
 """A wall rises more than 10 mm above the floor of a workspace, at most 30 mm beside it."""
 SPACE = 0.15
 """If a file has no site 'workspace', the workspace above the object has this height (m)."""
+NARROWEST = 0.02
+"""A container is at least this wide inside (m)."""
 RIM = 16
 """Number of points on each rim of a cylinder: between them, the error is below 2 % of the radius."""
 
@@ -42,6 +44,41 @@ def space_above(low: FloatArray, high: FloatArray) -> Region:
     return Region(center, (float(length) / 2, float(width) / 2, SPACE / 2))
 
 
+def own_space(shapes: tuple[Shape, ...]) -> Region:
+    """Return the workspace of an object without a stated one: its inside if it is a container, else the space above it.
+
+    The inside of a container begins on its floor, between walls on all four sides. It is at least ``SPACE`` high, since
+    the things in a tray are higher than its rim.
+    """
+    low, high = bounds_of(shapes)
+    return _inside(shapes, low, high) or space_above(low, high)
+
+
+def _inside(shapes: tuple[Shape, ...], low: FloatArray, high: FloatArray) -> Region | None:
+    """Return the space between the walls around the middle of a bounding box, or ``None`` without walls or floor."""
+    boxes = [bounds_of((shape,)) for shape in shapes]
+    x, y = (float(middle) for middle in (low + high)[:2] / 2)
+    floors = [float(top[2]) for bottom, top in boxes if bottom[0] < x < top[0] and bottom[1] < y < top[1]]
+    if not floors:
+        return None
+    floor = max(floors)
+    walls = [(bottom, top) for bottom, top in boxes if top[2] > floor + RISES]
+    edges: list[list[float]] = []
+    for axis, middle in enumerate((x, y)):
+        below = [float(top[axis]) for _, top in walls if top[axis] < middle]
+        above = [float(bottom[axis]) for bottom, _ in walls if bottom[axis] > middle]
+        if not below or not above:
+            return None
+        edges.append([max(below), min(above)])
+    half = np.array([(end - begin) / 2 for begin, end in edges])
+    if half.min() < NARROWEST / 2:
+        return None
+    height = max(SPACE, float(high[2]) - floor)
+    center = (sum(edges[0]) / 2, sum(edges[1]) / 2, floor + height / 2)
+    found = with_walls(Region(center, (float(half[0]), float(half[1]), height / 2)), shapes)
+    return found if found.walled else None
+
+
 def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
     """Return a workspace of an object with these shapes, walled if a wall rises above its floor on all four sides."""
     boxes = [bounds_of((shape,)) for shape in shapes]
@@ -61,10 +98,10 @@ def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
 
 
 def carrying(model: ObjectModel) -> ObjectModel:
-    """Return an object that carries a workspace. If its model has none, this is the space above it."""
+    """Return an object that carries a workspace. If its model has none, this is its inside or the space above it."""
     if model.region is not None or model.parts:
         return model
-    return replace(model, region=space_above(*bounds_of(model.shapes)))
+    return replace(model, region=own_space(model.shapes))
 
 
 def centred(model: ObjectModel) -> ObjectModel:

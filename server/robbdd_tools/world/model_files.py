@@ -17,7 +17,7 @@ from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definiti
 from robbdd_tools.world.constraints import refuse_constraints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.extent import bounds_of, space_above, with_walls
+from robbdd_tools.world.extent import bounds_of, own_space, with_walls
 from robbdd_tools.world.model_meshes import hollow_meshes, read_model, refuse_filled
 from robbdd_tools.world.moving_parts import (
     handle_of,
@@ -180,8 +180,8 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
 
     It consists of the collision shapes of the body and of everything fixed to it, with their friction and colours, and
     its mass is distributed as in the file. A mesh is its convex hull. It can move if the file gives it a free joint or,
-    in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else the
-    space above it. Bodies with joints are moving parts; their workspaces are box sites.
+    in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else its
+    inside or the space above it. Bodies with joints are moving parts; their workspaces are box sites.
     """
     model = compiled(spec, source)
     body = _body(model, source, body_name)
@@ -195,14 +195,14 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     refuse_filled(model, data, [one for one in range(model.nsite) if _is_workspace(model, one, own)], own, source)
     parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
     main = _Rigid(model, data, body, body, source)
-    low, high = bounds_of(main.shapes)
+    low, _ = bounds_of(main.shapes)
     free = is_free(model, body) if source.format != "urdf" else float(model.body_mass[body]) > 0
     jointed = not free and bool(int(model.body_jntnum[body]))
     if free:
         _refuse_light(main.mass, source)
     own = next((region for region in sites.get(body, ()) if not region.name and (carries or not free)), None)
     if own is None and (carries or not free) and not sites and not jointed:
-        own = space_above(low, high)
+        own = own_space(main.shapes)
     chosen = ObjectModel(
         name=source.iri,
         prefixes=(),

@@ -8,7 +8,7 @@ from functools import partial
 from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import ObjectModel, RobotModel, ShapeKind, Vector
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.catalog.settings import NORMAL
@@ -20,8 +20,8 @@ from robbdd_tools.world.fixed_obstacles import Obstacle, fixed_obstacles
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
+from robbdd_tools.world.working_area import area_within, is_on, place_before
 from robbdd_tools.world.working_area import field_before as field_before
-from robbdd_tools.world.working_area import place_before
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,7 +64,7 @@ class _Field:
 
     ``skew`` bounds the rotation (rad). ``gap`` and ``wall_gap`` are distances (m) to other objects and to bins; in a
     bin there is no ``wall_gap``. ``base`` is the base of the robot that works there. ``obstacles`` are fixed shapes to
-    keep clear of.
+    keep clear of. ``on`` is the carrier's pose with the region above which objects stay, if the rectangle is larger.
     """
 
     center: tuple[float, float]
@@ -75,6 +75,11 @@ class _Field:
     wall_gap: float | None
     base: Pose
     obstacles: tuple[Obstacle, ...] = ()
+    on: tuple[Pose, Region] | None = None
+
+    def has(self, x: float, y: float) -> bool:
+        """Return whether a point (m) is above the carrier and before the robot."""
+        return (self.on is None or is_on(*self.on, x, y)) and abs(bearing(self.base, x, y)) <= BEARING
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,12 +262,10 @@ def _fields(
     radius = footprint(cast.objects[name])
     if region is None:
         raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
-    x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
-    half, base = region.half, works_at(pose, model)
-    if model.joint is not None:
-        (x, y, z), half = pose.at(region.center).position, _flat(half, pose.yaw)
+    x, y, z = pose.at(region.center).position
+    half, base = _flat(region.half, pose.yaw), works_at(pose, model)
     bottom = z - region.half[2]
-    if can_move(model):
+    if can_move(model) or region.walled:
         inner = (half[0] - radius, half[1] - radius)
         if region.walled:
             yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base)
@@ -271,14 +274,17 @@ def _fields(
         yield _Field((x, y), inner, bottom, pi, TOUCHING, None, base)
         return
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
+    if area is None and name not in cast.ranges:
+        area = area_within(base, pose, region)
     if area is None:
         raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
     obstacles = fixed_obstacles(cast.objects, poses, carrier)
-    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles)
-    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles)
+    on = (pose, region)
+    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles, on)
+    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles, on)
     if obstacles:
         # Their boxes may be larger than they are. Whether anything overlaps is checked later.
-        yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base)
+        yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, (), on)
 
 
 def _flat(half: Vector, yaw: float) -> Vector:
@@ -309,7 +315,7 @@ def _draw(
             clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
             apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
             blocked = any(one.is_near(x, y, radius + TOUCHING, field.height, top) for one in field.obstacles)
-            if clear and apart and not blocked and abs(bearing(field.base, x, y)) <= BEARING:
+            if clear and apart and not blocked and field.has(x, y):
                 return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
             rejected += 1
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
@@ -322,15 +328,16 @@ def _place_above(
     dx, dy = rng.uniform(-1.0, 1.0, 2)
     x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
     free = all(_apart(x, y, radius + TOUCHING, pose, other) for pose, other in walls)
-    return (x, y) if free and abs(bearing(field.base, x, y)) <= BEARING else None
+    return (x, y) if free and field.has(x, y) else None
 
 
 def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
     """Return whether a point is at least ``distance`` (m) from a bin's walls."""
     if model.region is None:
         return True
-    dx = max(abs(x - pose.position[0]) - model.region.half[0], 0.0)
-    dy = max(abs(y - pose.position[1]) - model.region.half[1], 0.0)
+    x, y, c, s = x - pose.position[0], y - pose.position[1], cos(pose.yaw), sin(pose.yaw)
+    dx = max(abs(c * x + s * y) - model.region.half[0], 0.0)
+    dy = max(abs(c * y - s * x) - model.region.half[1], 0.0)
     return hypot(dx, dy) >= distance
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, hypot
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ import numpy as np
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
+from robbdd_tools.world.working_area import area_of, is_on
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Region, Vector
@@ -100,18 +101,18 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
 
 
 def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    position, _ = simulation.seen_place(carrier)
+    position, rotation = simulation.seen_place(carrier)
     model = simulation.world.cast.objects[carrier]
-    table = Pose((float(position[0]), float(position[1]), float(position[2])))
-    area = field_before(robot.base, table, model)
-    if area is None:
-        return
+    yaw = atan2(float(rotation[1, 0]), float(rotation[0, 0]))
+    table = Pose((float(position[0]), float(position[1]), float(position[2])), yaw)
+    # Whether an arm reaches a user's own place is up to the arm.
+    area = field_before(robot.base, table, replace(model, region=region)) or area_of(table, region)
     (cx, cy), (hx, hy) = area
     shares = np.linspace(-1.0, 1.0, GRID)
     others = _others(simulation, name, carrier)
     radius = footprint(simulation.world.cast.objects[name])
     grid = [(float(cx + sx * hx), float(cy + sy * hy)) for sx in shares for sy in shares]
-    points = [point for point in grid if abs(bearing(robot.base, *point)) <= BEARING]
+    points = [one for one in grid if is_on(table, region, *one) and abs(bearing(robot.base, *one)) <= BEARING]
     crowding = {point: _crowding(*point, others, radius) for point in points}
     roomy = [point for point in points if not crowding[point]]
     surface = float(position[2]) + region.center[2] - region.half[2]

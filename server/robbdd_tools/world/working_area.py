@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2
+from math import atan2, cos, hypot, inf, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,40 +14,65 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, ObjectModel, Region
     from robbdd_tools.catalog.settings import Numbers
 
+Area = tuple[tuple[float, float], tuple[float, float]]
+"""Centre and half edges (m) of a rectangle along the world's axes."""
+FARTHEST = 2.0
+"""No arm reaches a table that is farther (m) from its base."""
+EXACT = 1e-9
+"""Rounding (m) of points on an edge."""
 NEAREST = 0.30
 """If there is room, a mobile base's axis is this far (m) from the side of a workspace at which it works."""
 
 
-def field_before(
-    base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
+def field_before(base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL) -> Area | None:
     """Return centre and half edges (m) of the part of a table in front of a robot's base, ``None`` if there is none.
 
     ``area`` (m) has four limits relative to the base: nearest and farthest ahead, rightmost and leftmost (left is
-    positive).
+    positive). Edges are parallel to the world's axes: around a table that is turned, the corners are beside it.
     """
     if model.region is None:
         return None
-    if abs(base.position[1] - table.position[1]) > model.region.half[1]:
-        return _field_before_end(base, table, model.region, area)
-    side = 1.0 if table.position[0] >= base.position[0] else -1.0
+    middle, half = area_of(table, model.region)
+    if abs(base.position[1] - middle[1]) > half[1]:
+        return _field_before_end(base, middle, half, area)
+    side = 1.0 if middle[0] >= base.position[0] else -1.0
     (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
-    left, ahead, _ = (at + offset for at, offset in zip(table.position, model.region.center, strict=True))
-    x = _overlap(base.position[0] + near, base.position[0] + far, left, model.region.half[0])
-    y = _overlap(base.position[1] + low, base.position[1] + high, ahead, model.region.half[1])
+    x = _overlap(base.position[0] + near, base.position[0] + far, middle[0], half[0])
+    y = _overlap(base.position[1] + low, base.position[1] + high, middle[1], half[1])
     if x is None or y is None:
         return None
     return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
 
 
-def _field_before_end(
-    base: Pose, table: Pose, region: Region, area: Numbers
-) -> tuple[tuple[float, float], tuple[float, float]] | None:
+def is_on(table: Pose, region: Region, x: float, y: float) -> bool:
+    """Return whether a point (m, world frame) is above or below a region of a table that may be turned."""
+    mx, my, _ = table.at(region.center).position
+    dx, dy, c, s = x - mx, y - my, cos(table.yaw), sin(table.yaw)
+    ahead, left = abs(c * dx + s * dy), abs(c * dy - s * dx)
+    return ahead <= region.half[0] + EXACT and left <= region.half[1] + EXACT
+
+
+def area_of(table: Pose, region: Region) -> Area:
+    """Return centre and half edges (m) of the rectangle, parallel to the world's axes, around a region of a table."""
+    x, y, _ = table.at(region.center).position
+    c, s = abs(cos(table.yaw)), abs(sin(table.yaw))
+    long, wide, _ = region.half
+    return (x, y), (c * long + s * wide, s * long + c * wide)
+
+
+def area_within(base: Pose, table: Pose, region: Region) -> Area | None:
+    """Return ``area_of`` a region, or ``None`` if all of it is farther from a base than any arm reaches."""
+    (x, y), (hx, hy) = area_of(table, region)
+    gaps = max(abs(x - base.position[0]) - hx, 0.0), max(abs(y - base.position[1]) - hy, 0.0)
+    return None if hypot(*gaps) > FARTHEST else ((x, y), (hx, hy))
+
+
+def _field_before_end(base: Pose, middle: tuple[float, float], half: tuple[float, float], area: Numbers) -> Area | None:
     """Return the same for a base beyond the left or right end of a table, with its forward direction along y."""
-    side = 1.0 if table.position[1] >= base.position[1] else -1.0
+    side = 1.0 if middle[1] >= base.position[1] else -1.0
     (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
-    y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
-    x = _overlap(base.position[0] + low, base.position[0] + high, table.position[0], region.half[0])
+    y = _overlap(base.position[1] + near, base.position[1] + far, middle[1], half[1])
+    x = _overlap(base.position[0] + low, base.position[0] + high, middle[0], half[0])
     if x is None or y is None:
         return None
     return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
@@ -61,10 +86,11 @@ def _overlap(low: float, high: float, middle: float, half: float) -> tuple[float
 def before_base(base: Pose, table: Pose, model: ObjectModel, place: Pose) -> tuple[float, float]:
     """Return how far (m) a place on a table is ahead of a robot's base and to its left, as in ``field_before``."""
     x, y = (float(there - here) for there, here in zip(place.position[:2], base.position[:2], strict=True))
-    if model.region is not None and abs(base.position[1] - table.position[1]) > model.region.half[1]:
-        side = 1.0 if table.position[1] >= base.position[1] else -1.0
+    middle, half = (table.position[:2], (0.0, inf)) if model.region is None else area_of(table, model.region)
+    if abs(base.position[1] - middle[1]) > half[1]:
+        side = 1.0 if middle[1] >= base.position[1] else -1.0
         return side * y, -side * x
-    side = 1.0 if table.position[0] >= base.position[0] else -1.0
+    side = 1.0 if middle[0] >= base.position[0] else -1.0
     return side * x, side * y
 
 
