@@ -220,7 +220,7 @@ class PickPlace(ArmControl):
         robot = self.robot
         x, y, surface = target.position
         height = surface + grasp.below + target.gap
-        top = max(robot.model.travel_height, height)
+        top = max(robot.travel_height, height)
         closing = target.closing if target.closing is not None else grasp.closing
         while height <= top:
             found = self._reached(np.array([x, y, height]), closing, name, grasp, missed)

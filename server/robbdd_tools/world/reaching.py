@@ -81,7 +81,7 @@ class Obstruction:
 def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
     """Return a tool pose raised to the travelling height or, if the arm does not reach so high there, less far."""
     arm = arm_of(robot.model)
-    height = robot.model.travel_height - robot.base.position[2]
+    height = robot.travel_height - robot.base.position[2]
     over = replace(pose, height=max(min(height, arm.stroke[1] - SAME), pose.height))
     # The paths of the catalog's arms are published results.
     return over if arm.is_published else _lowered(arm, over, pose.height + LOWEST)
@@ -105,7 +105,7 @@ def _lowered(arm: Arm, over: ToolPose, lowest: float) -> ToolPose:
 
 def is_high(robot: Robot, pose: ToolPose, below: float) -> bool:
     """Return whether what a tool holds, ``below`` m above its support, is on a support near the travelling height."""
-    return pose.height + robot.base.position[2] - below > HIGH
+    return pose.height + robot.base.position[2] - below > HIGH + robot.raised
 
 
 def over_support(simulation: Simulation, robot: Robot, name: str, pose: ToolPose, below: float) -> ToolPose:

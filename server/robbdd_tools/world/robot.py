@@ -11,6 +11,7 @@ from robbdd_tools.world.coupled_joints import coupled_joints
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.mobile_base import BaseState, base_of
+from robbdd_tools.world.placement import TABLE_TOP, surface
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -57,6 +58,10 @@ class Robot:
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
         """A joint's target leads by this time (s) to compensate for the servo's damping, shape (n,)."""
+        self.raised = _raised(world, name)
+        """Heights of usual cells are this much (m) higher here."""
+        self.travel_height = robot.travel_height + self.raised
+        """Height (m, world frame) at which the tool travels."""
 
     def follow_base(self, data: Any) -> None:
         """Update ``base`` with the pose of a mobile base in a state of the engine."""
@@ -70,3 +75,15 @@ class Robot:
         found = copy(self)
         found.follow_base(data)
         return found
+
+
+def _raised(world: World, name: str) -> float:
+    """Return how much (m) higher the largest table is than a usual one; 0 with a configured ``travel_height``.
+
+    In models of users, the world's origin is often on the floor.
+    """
+    cast = world.cast
+    if not cast.tables or (name, "travel_height") in cast.chosen:
+        return 0.0
+    table = cast.tables[0]
+    return max(0.0, round(world.poses[table].position[2] + surface(cast.objects[table]) - TABLE_TOP, 6))

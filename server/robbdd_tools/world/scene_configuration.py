@@ -85,6 +85,7 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case name if name in CONTROLLER and robot is not None:
             changed: dict[str, Any] = {CONTROLLER[name]: value[0]}
             found.agents[element] = replace(robot, **changed)
+            found.chosen[element, name] = value
         case "position_range" | "drop_height" as name if robot is not None or able is not None:
             areas = found.ranges if name == "position_range" else found.drops
             areas |= {} if robot is None else dict.fromkeys(_loose(found, areas), value)
