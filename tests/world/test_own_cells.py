@@ -13,7 +13,7 @@ from robbdd_tools.catalog.api import Region, Shape, ShapeKind
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.catalog.objects.bin import BIN as CATALOG_BIN
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
-from robbdd_tools.world.extent import SPACE, own_space
+from robbdd_tools.world.extent import SPACE, own_space, with_walls
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.working_area import area_of, area_within, field_before, is_on
 from world.scene_instances import file, instance, link
@@ -53,6 +53,19 @@ def test_without_walls_or_floor_the_workspace_is_above(shapes: tuple[Shape, ...]
     found = own_space(shapes)
     assert not found.walled
     assert found.center[2] - found.half[2] == pytest.approx(top)
+
+
+def test_a_wide_table_with_a_rim_is_worked_on_like_a_table_inside_of_its_rim() -> None:
+    wide = tuple(
+        replace(one, size=(4 * one.size[0], 6 * one.size[1], one.size[2]), position=(4 * x, 6 * y, z))
+        for one in tray(0.02)
+        for x, y, z in [one.position]
+    )
+    found = own_space(wide)
+    assert not found.walled
+    assert found.center[2] - found.half[2] == pytest.approx(0.01)
+    assert found.half[:2] == pytest.approx((0.58, 0.57))
+    assert with_walls(found, wide) == found
 
 
 def test_a_closed_box_has_its_workspace_on_its_lid() -> None:

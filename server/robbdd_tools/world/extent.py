@@ -19,8 +19,8 @@ RISES, BESIDE = 0.01, 0.03
 """A wall rises more than 10 mm above the floor of a workspace, at most 30 mm beside it."""
 SPACE = 0.15
 """If a file has no site 'workspace', the workspace above the object has this height (m)."""
-NARROWEST = 0.02
-"""A container is at least this wide inside (m)."""
+NARROWEST, WIDEST = 0.02, 0.5
+"""The shorter side of a container is between these lengths (m) inside; what is wider is a table with a rim."""
 RIM = 16
 """Number of points on each rim of a cylinder: between them, the error is below 2 % of the radius."""
 
@@ -75,12 +75,20 @@ def _inside(shapes: tuple[Shape, ...], low: FloatArray, high: FloatArray) -> Reg
         return None
     height = max(SPACE, float(high[2]) - floor)
     center = (sum(edges[0]) / 2, sum(edges[1]) / 2, floor + height / 2)
-    found = with_walls(Region(center, (float(half[0]), float(half[1]), height / 2)), shapes)
-    return found if found.walled else None
+    found = Region(center, (float(half[0]), float(half[1]), height / 2))
+    return with_walls(found, shapes) if _has_walls(found, shapes) else None
 
 
 def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
-    """Return a workspace of an object with these shapes, walled if a wall rises above its floor on all four sides."""
+    """Return a workspace of an object with these shapes, walled if a wall rises above its floor on all four sides.
+
+    A wide one is a table with a rim, on which an arm works as on other tables.
+    """
+    is_wide = 2 * min(region.half[:2]) > WIDEST
+    return replace(region, walled=not is_wide and _has_walls(region, shapes))
+
+
+def _has_walls(region: Region, shapes: tuple[Shape, ...]) -> bool:
     boxes = [bounds_of((shape,)) for shape in shapes]
     center, half = np.array(region.center), np.array(region.half)
     bottom = center[2] - half[2]
@@ -93,8 +101,8 @@ def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
             first, last = center[along] - half[along], center[along] + half[along]
             lengths = (min(other[along], last) - max(one[along], first) for one, other in outer)
             if sum(length for length in lengths if length > 0.0) < half[along]:
-                return region
-    return replace(region, walled=True)
+                return False
+    return True
 
 
 def carrying(model: ObjectModel) -> ObjectModel:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.catalog.executable import ModelEntry
-from robbdd_tools.world.coupled_joints import stiffen
+from robbdd_tools.world.coupled_joints import RIGID, stiffen
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.gripper_faces import length_of
@@ -174,6 +174,8 @@ class GripperActuator:
                 equality.name1, equality.name2 = follower.name, leader.name
                 equality.objtype = mujoco.mjtObj.mjOBJ_JOINT
                 equality.data[:5] = [0.0, -1.0 if mirrored else 1.0, 0.0, 0.0, 0.0]
+                if first.name in self._parts.added:
+                    equality.solref = RIGID
                 # The constraint is stiffer than a limit: it would push the other finger beyond its range.
                 leader.range = _common(leader.range, -follower.range[::-1] if mirrored else follower.range)
             self._spec.delete(other)
@@ -207,7 +209,8 @@ def press(parts: GripperParts, actuator: Any, lever: float, faces: int) -> None:
     joint.actfrcrange, joint.actfrclimited = [0.0, 0.0], False
     rotor = ROTOR * float(actuator.gainprm[0]) * float(parts.spec.option.timestep) ** 2
     ties = [one for one in parts.spec.equalities if one.type == mujoco.mjtEq.mjEQ_JOINT and one.name2 == joint.name]
-    stiffen(parts.spec, [str(one.name1) for one in ties])
+    if parts.source.format == "urdf":
+        stiffen(parts.spec, [str(one.name1) for one in ties])
     for finger in (joint, *(parts.spec.joint(str(one.name1)) for one in ties)):
         finger.armature = max(float(finger.armature), rotor)
 
