@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, pi, radians, sin
+from math import cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import pytest
@@ -13,11 +13,13 @@ from robbdd_tools.catalog.api import Region, Shape, ShapeKind
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.catalog.objects.bin import BIN as CATALOG_BIN
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
+from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.extent import SPACE, own_space, with_walls
+from robbdd_tools.world.placement import HAND_GAP
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.working_area import area_of, area_within, field_before, is_on
-from world.scene_instances import file, instance, link
-from world.worlds import CUBE, PANDA, pick_place, scenario
+from world.scene_instances import catalog, file, instance, link
+from world.worlds import BIN, BIN_WS, CUBE, PANDA, pick_place, scenario
 
 TABLE, TABLE_WS, ON = "env:table", "env:table_ws", ("x:g.table", "table")
 BUILT_IN = Implementation("x:own", "catalog", "pick-place")
@@ -131,6 +133,20 @@ def cell(folder: Path, text: str, place: tuple[float, float, float], degrees: fl
     scene = SceneSpec((CUBE, TABLE), (PANDA,), {TABLE_WS: (TABLE,)}, {}, places={CUBE: TABLE_WS})
     execution = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(turn, elements=(model,)))
     return Execution(replace(scenario(scene, seed), execution=execution), [pick_place(CUBE, TABLE_WS)])
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0])
+def test_things_are_laid_out_beside_a_bin_that_is_turned(degrees: float) -> None:
+    """The walls of the bin are 0.3 m and 0.2 m long."""
+    half = radians(degrees) / 2
+    turned = link("x:g.bin.bottom", (0.42, 0.0, 0.1), turn=(cos(half), 0.0, 0.0, sin(half)))
+    cell = instance(turned, elements=(catalog(BIN, "bin", "x:g.bin"),))
+    scene = SceneSpec((CUBE, BIN, "env:bench"), (PANDA,), {BIN_WS: (BIN,)}, {})
+    long, wide = (0.15, 0.1) if degrees == 0.0 else (0.1, 0.15)
+    for seed in range(40):
+        x, y, _ = build_world(scene, seed, None, cell).poses[CUBE].position
+        away = hypot(max(abs(x - 0.42) - long, 0.0), max(abs(y) - wide, 0.0))
+        assert away > HAND_GAP
 
 
 PLANK = '<geom type="box" size="0.7 0.12 0.02" pos="0 0 -0.02"/>'

@@ -156,7 +156,7 @@ def test_whether_a_far_place_is_reached_is_up_to_the_arm() -> None:
     robot = simulation.robots[PANDA]
     robot.base = replace(robot.base, position=(-0.65, 0.0, 0.15))
     found = [target.position for target in targets(simulation, robot, CUBE, BENCH_WS)]
-    assert len(found) == 49
+    assert len(set(found)) == 49
     assert min(x for x, _, _ in found) - robot.base.position[0] > 0.6
 
 
