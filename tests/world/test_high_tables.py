@@ -19,6 +19,7 @@ from robbdd_tools.catalog.executable import (
     SceneInstance,
 )
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec
+from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.motion import tool_pose
 from robbdd_tools.world.placement import TABLE_TOP
 from robbdd_tools.world.reaching import at_travel, is_high, over_support
@@ -149,9 +150,12 @@ def test_a_tool_travels_equally_high_above_the_largest_table_wherever_the_origin
     tmp_path: Path, height: float
 ) -> None:
     """In models of users, the origin of the world is often on the floor."""
-    robot = carrying(tmp_path, (0.0, 0.0, height), things_at(height), True).simulation.robots[ARM]
+    run = carrying(tmp_path, (0.0, 0.0, height), things_at(height), True)
+    robot = run.simulation.robots[ARM]
     pose = tool_pose(robot.base, np.array([0.45, -0.1, height + 0.03]), 0.0)
     assert robot.travel_height == pytest.approx(height + 0.2)
+    told = read_back(run.simulation, SCENE)[ARM, "travel_height"]
+    assert float(told) == pytest.approx(height + 0.2), "clauses see the height that is used"
     assert at_travel(robot, pose).height - pose.height == pytest.approx(0.17, abs=1e-6)
     assert not is_high(robot, pose, 0.03)
 

@@ -53,6 +53,7 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
     for name, robot in simulation.robots.items():
         for setting, attribute in CONTROLLER.items():
             settings[name, setting] = (getattr(robot.model, attribute),)
+        settings[name, "travel_height"] = (robot.travel_height,)
         if robot.model.approach_speed is None:
             settings[name, "approach_speed"] = settings[name, "ee_speed"]
         settings[name, "position_range"] = cast.ranges.get(name, NORMAL)

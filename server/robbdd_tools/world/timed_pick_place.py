@@ -82,7 +82,7 @@ class TimedPickPlace:
 
     def _target(self, phase: int, share: float, part: FloatArray, goal: FloatArray) -> FloatArray:
         """Return the position (3,) m, world frame, of the tool's target."""
-        travel = self._robot.model.travel_height
+        travel = self._robot.travel_height
         heights = {
             ABOVE: (travel, travel),
             LOWER: (travel, part[2]),
