@@ -13,6 +13,12 @@ from logs.named_drive import HEAD, cell, named
 from robbdd_tools.features.diagnostics import fast_diagnostics
 
 pytestmark = pytest.mark.physics
+
+
+def turned(degrees: int) -> str:
+    return f"orientation: euler {{ angles: (0, 0, {degrees}) unit: deg }}"
+
+
 SIMULATED = """bhv impl (ns=exec) built-in { catalog "pick-place" }
 Scenario Exec (ns=exec) sim { variant: <tidy-bench.part-to-bin> scene inst: <bench_sim> bhv: <built-in> }
 """
@@ -36,6 +42,10 @@ def with_boxes(folder: Path, boxes: str, text: str) -> Path:
         ("box { offset: (0, 30, 50) mm size: (100, 100, 100) mm }", "holds", 0.02),
         ("box { offset: (0, 0, 25) mm size: (100, 100, 30) mm }", "violated", -0.02),
         ("box { offset: (0, 0, 1) m size: (1, 1, 1) m }", "violated", -0.44),
+        (f"box {{ offset: (60, 0, 50) mm size: (100, 20, 60) mm {turned(180)} }}", "violated", -0.01),
+        (f"box {{ offset: (60, 0, 50) mm size: (100, 20, 60) mm {turned(90)} }}", "violated", -0.05),
+        (f"box {{ offset: (40, 40, 60) mm size: (200, 40, 60) mm {turned(45)} }}", "holds", 0.02),
+        (f"box {{ offset: (40, 40, 60) mm size: (200, 40, 60) mm {turned(-45)} }}", "violated", 0.02 - 0.04 * 2**0.5),
         ("box { size: (1, 1, 1) mm } box { offset: (0, 0, 60) mm size: (20, 20, 20) mm }", "holds", 0.01),
     ],
 )
@@ -64,6 +74,16 @@ def test_the_same_box_decides_in_simulation(tmp_path: Path) -> None:
     [
         ("size: (1, 1) m", "pose", "a size needs 3 numbers, not 2"),
         ("offset: (1, 1, 1, 1) m size: (1, 1, 1) m", "pose", "an offset needs 3 numbers, not 4"),
+        (
+            "size: (1, 1, 1) m orientation: euler { angles: (0, 30) unit: deg }",
+            "pose",
+            "this is not a rotation: it has 3 angles",
+        ),
+        (
+            "size: (1, 1, 1) m orientation: euler { sample <spin> }",
+            "pose",
+            "the orientation of a box cannot be drawn at random: write a rotation",
+        ),
         (
             "size: (1, 0, 1) m",
             "number-range",

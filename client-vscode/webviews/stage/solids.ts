@@ -41,10 +41,10 @@ export function solid(shape: Shape, meshes: readonly BufferGeometry[]): Mesh {
   return placed(new Mesh(geometry(shape, meshes), material), shape.position, shape.orientation);
 }
 
-/** The edges of a box with these half edges, m. */
-export function outline(centre: Triple, [x, y, z]: Triple): LineSegments {
+/** The edges of a box with these half edges, m, rotated about its centre. */
+export function outline(centre: Triple, [x, y, z]: Triple, turn?: Turn): LineSegments {
   const edges = new EdgesGeometry(new BoxGeometry(2 * x, 2 * y, 2 * z));
-  return placed(new LineSegments(edges, new LineBasicMaterial({ color: OUTLINE, transparent: true, opacity: 0.8 })), centre);
+  return placed(new LineSegments(edges, new LineBasicMaterial({ color: OUTLINE, transparent: true, opacity: 0.8 })), centre, turn);
 }
 
 /** Place something in the frame of its parent. */

@@ -176,7 +176,7 @@ export class Stage {
   }
 
   private addWorkspaces({ workspaces }: Drawing): void {
-    for (const { name, body, center, half } of workspaces) {
+    for (const { name, body, center, half, orientation } of workspaces) {
       const carrier = body === null ? new Group() : this.bodies[body];
       if (carrier === undefined) {
         continue;
@@ -184,9 +184,11 @@ export class Stage {
       if (body === null) {
         this.scene.add(carrier);
       }
-      carrier.add(outline(center, half));
+      const edges = outline(center, half, orientation);
+      carrier.add(edges);
       // At a corner: its middle is occupied by its contents.
-      this.labels.add(local(name), carrier, [center[0] - half[0], center[1] - half[1], center[2] + half[2]], "workspace");
+      const corner = new Vector3(-half[0], -half[1], half[2]).applyQuaternion(edges.quaternion).add(edges.position);
+      this.labels.add(local(name), carrier, corner.toArray(), "workspace");
     }
   }
 

@@ -42,8 +42,7 @@ class Kind(StrEnum):
 class Slot:
     """One argument of a phrase: its name, its kinds, and the RDF property (CURIE) that carries it.
 
-    ``dimension`` is what a quantity measures, such as ``length``; empty for other kinds. ``unsigned`` marks a quantity
-    that is never negative: with a negative one, the predicate would be always true or never.
+    ``dimension`` is what a quantity measures, such as ``length``; ``unsigned`` marks one that is never negative.
     """
 
     name: str
@@ -55,16 +54,17 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """An axis-aligned box in the frame of the object that carries a workspace.
+    """A box in the frame of a workspace's carrier: ``center`` and ``half`` (half edges), m.
 
-    ``center`` and ``half`` (half edges) are in m. The region of a bin is its inside and is ``walled``. ``name`` is the
-    name of a part, such as a shelf's board.
+    ``turn`` (unit quaternion w, x, y, z) rotates it about its centre. A bin's region is its inside and is ``walled``;
+    ``name`` is that of a part, such as a shelf's board.
     """
 
     center: Vector
     half: Vector
     name: str = ""
     walled: bool = False
+    turn: tuple[float, ...] = ()
 
 
 Outline = tuple[tuple[Vector, float], ...]

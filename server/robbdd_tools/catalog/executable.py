@@ -273,13 +273,14 @@ class Friction:
 class WorkspaceBox:
     """A space of a workspace, given in place of those of the models that carry it.
 
-    ``offset`` is the centre of the box in the frame of the model, and ``size`` has its edges along the axes of this
-    frame, both in m.
+    ``offset`` is the centre of the box in the frame of the model, and ``size`` has its edges, both in m. ``turn``, a
+    unit quaternion with w first, rotates the edges from the axes of this frame; without it, they are along the axes.
     """
 
     workspace: str
     offset: tuple[float, ...]
     size: tuple[float, ...]
+    turn: tuple[float, ...] = ()
     origin: Origin | None = None
 
 

@@ -77,8 +77,7 @@ def inside_margin(
     others = [(_floor(evidence, other), _into(evidence, other, position)) for other in every if other not in own]
     margins = np.full(len(position), -np.inf)
     for place in own:
-        carrier, region = place
-        frame = evidence.position(carrier), evidence.orientation(carrier)
+        region, frame = place[1], _frame(evidence, place)
         inside = _into(evidence, place, position)
         for centers, radius in balls:
             local = into_frame(centers, *frame)
@@ -137,8 +136,8 @@ def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -
 
     A point less than ``CONTACT`` below the bottom counts as on it.
     """
-    carrier, region = place
-    local = into_frame(position, evidence.position(carrier), evidence.orientation(carrier))
+    region = place[1]
+    local = into_frame(position, *_frame(evidence, place))
     bottom = region.center[2] - region.half[2]
     resting = (local[:, 2] < bottom) & (local[:, 2] >= bottom - CONTACT)
     local[resting, 2] = bottom
@@ -147,10 +146,27 @@ def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -
 
 def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:
     """Return the height (m, world frame) of the centre of a region's bottom, shape (n,)."""
-    carrier, region = place
+    region = place[1]
     x, y, z = region.center
     bottom = (x, y, z - region.half[2])
-    return out_of_frame(bottom, evidence.position(carrier), evidence.orientation(carrier))[:, 2]
+    return out_of_frame(bottom, *_frame(evidence, place))[:, 2]
+
+
+def _frame(evidence: Evidence, place: tuple[str, Region]) -> tuple[FloatArray, FloatArray]:
+    """Return origins (n, 3) m and orientations (n, 4) of a frame in which a region's edges are along the axes.
+
+    It is the frame of the carrier, rotated about the centre of the region.
+    """
+    import numpy as np
+
+    carrier, region = place
+    position, orientation = evidence.position(carrier), evidence.orientation(carrier)
+    if not region.turn:
+        return position, orientation
+    w, x, y, z = region.turn
+    turned = orientation @ np.array([[w, x, y, z], [-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])
+    center = out_of_frame(region.center, position, orientation)
+    return center - out_of_frame(region.center, np.zeros_like(position), turned), turned
 
 
 def limit_of(evidence: Evidence, elements: Iterable[str], name: str) -> float | None:

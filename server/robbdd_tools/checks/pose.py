@@ -40,6 +40,12 @@ def _box(site: Site, box: tree.WorkspaceBox) -> Iterator[Diagnostic]:
         count = 3 if written is None else len(numbers_of(written))
         if written is not None and count != 3:
             yield _described(site, written, f"{what} needs 3 numbers, not {count}")
+    if box.orientation is None:
+        return
+    if isinstance(box.orientation.value, tree.Sample):
+        yield _described(site, box.orientation, "the orientation of a box cannot be drawn at random: write a rotation")
+    else:
+        yield from _orientation(site, box.orientation.value)
 
 
 def _position(site: Site, written: tree.Vector | tree.Sample) -> Iterator[Diagnostic]:

@@ -64,8 +64,9 @@ def scene_markers(geometry: Mapping[str, Any], frames: Mapping[str, Vector]) -> 
     for space in geometry["workspaces"]:
         center = np.array(space["center"]) - np.array(frames.get(space["body"], (0.0, 0.0, 0.0)))
         scale = [2 * half for half in space["half"]]
+        turn = space.get("orientation", UPRIGHT)
         name = f"workspace {frame_name(space['name'])}"
-        yield Drawn(frame_name(space["body"]), name, CUBE, center.tolist(), UPRIGHT, scale, WORKSPACE_COLOR)
+        yield Drawn(frame_name(space["body"]), name, CUBE, center.tolist(), turn, scale, WORKSPACE_COLOR)
 
 
 def event_marker(event: str, frame: str) -> Drawn:

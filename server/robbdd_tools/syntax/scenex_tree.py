@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from robbdd_tools.syntax.kinematics_tree import Graph, Vector
+from robbdd_tools.syntax.kinematics_tree import DirectionCosines, Euler, Graph, Quaternion, Vector
 from robbdd_tools.syntax.scene_tree import (
     CatalogEntry,
     Name,
@@ -141,12 +141,13 @@ class Sensor(Node):
 
 @dataclass(frozen=True, slots=True)
 class WorkspaceBox(Node):
-    """``box { offset: (…) m size: (…) m }``: a space of a workspace, in the frame of the object that carries it."""
+    """``box { offset: (…) m size: (…) m orientation: … }``: a space of a workspace, in the frame of its carrier."""
 
     offset: Vector | None
     offset_unit: str | None
     size: Vector
     size_unit: str
+    orientation: Quaternion | Euler | DirectionCosines | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,6 +46,7 @@ def geometry(model: Any, names: dict[int, str], regions: Regions) -> dict[str, A
         "meshes": [_mesh(model, mesh) for mesh in meshes],
         "workspaces": [
             {"name": workspace, "body": carrier, "center": list(region.center), "half": list(region.half)}
+            | ({"orientation": list(region.turn)} if region.turn else {})
             for workspace, boxes in regions.items()
             for carrier, region in boxes
         ],

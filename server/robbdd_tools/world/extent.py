@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.api import ObjectModel, Outline, Region, Shape, ShapeKind, Vector
+from robbdd_tools.world.region_frames import bounds_of_box
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -90,7 +91,7 @@ def with_walls(region: Region, shapes: tuple[Shape, ...]) -> Region:
 
 def _has_walls(region: Region, shapes: tuple[Shape, ...]) -> bool:
     boxes = [bounds_of((shape,)) for shape in shapes]
-    center, half = np.array(region.center), np.array(region.half)
+    center, half = np.array(region.center), bounds_of_box(region)
     bottom = center[2] - half[2]
     high = [(one, other) for one, other in boxes if one[2] < bottom + half[2] and other[2] > bottom + RISES]
     for axis, along in ((0, 1), (1, 0)):

@@ -15,6 +15,7 @@ from robbdd_tools.world.extent import half_of, outline_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.momentary import velocity_between
 from robbdd_tools.world.owners import geom_owners, joint_of_part
+from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -191,7 +192,7 @@ class KinematicSimulation(Simulation):
         model = self.world.cast.objects[name]
         if model.joint is None or model.region is None:
             return
-        place, turn = self.pose(name)
+        place, turn = along_edges(self.pose(name), model.region)
         for other in (other for other in self._free if self.world.cast.objects[other].graspable):
             position, rotation = self.pose(other)
             local = turn.T @ (position - place)

@@ -7,8 +7,6 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.base.model_paths import package_share
@@ -28,6 +26,7 @@ from robbdd_tools.world.moving_parts import (
     name_of_body,
     rigid_root,
 )
+from robbdd_tools.world.region_frames import box_of
 from robbdd_tools.world.solids import inertia_in, shape_in
 from robbdd_tools.world.urdf_files import speeds
 
@@ -324,8 +323,9 @@ def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[i
             continue
         frame = data.xmat[body].reshape(3, 3)
         center = frame.T @ (data.site_xpos[site] - data.xpos[body])
-        half = np.abs(frame.T @ data.site_xmat[site].reshape(3, 3)) @ model.site_size[site]
-        found.append((body, Region(_vector(center), _vector(half), name.removesuffix(SITE).strip(" _-.").lower())))
+        half, turn = box_of(model.site_size[site], frame.T @ data.site_xmat[site].reshape(3, 3))
+        part = name.removesuffix(SITE).strip(" _-.").lower()
+        found.append((body, Region(_vector(center), _vector(half), part, turn=turn)))
     if len(movers) == 1:
         del found[1:]
     if len(found) == 1:

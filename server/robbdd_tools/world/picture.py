@@ -9,6 +9,7 @@ import numpy as np
 
 from robbdd_tools.world.camera_aim import CORNERS, aim, corners_of
 from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.scene import local_name
 
 if TYPE_CHECKING:
@@ -125,8 +126,9 @@ class Camera:
         """Yield the corners (8, 3) m of each workspace; one of these corners has the label."""
         for _, carrier, region in self._regions():
             body = data.body(carrier)
+            place, turn = along_edges((body.xpos, body.xmat.reshape(3, 3)), region)
             local = np.array(region.center) + CORNERS * (np.array(region.half) + LABEL)
-            yield body.xpos + local @ body.xmat.reshape(3, 3).T
+            yield place + local @ turn.T
 
     def _look_at(self, data: Any, name: str) -> None:
         """Choose the first direction with a free view of the object."""
@@ -160,8 +162,8 @@ class Camera:
         odd: bool,
     ) -> None:
         body = data.body(carrier)
-        turn: FloatArray = body.xmat.reshape(3, 3)
-        center: FloatArray = body.xpos + turn @ np.array(region.center)
+        place, turn = along_edges((body.xpos, body.xmat.reshape(3, 3)), region)
+        center: FloatArray = place + turn @ np.array(region.center)
         half = np.array(region.half)
         free = self._simulation.world.cast.objects[carrier].free
         opacity = OPACITY if free else THIN

@@ -19,6 +19,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.fixed_obstacles import Obstacle, fixed_obstacles
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
+from robbdd_tools.world.region_frames import pose_along_edges
 from robbdd_tools.world.scene import carriers
 from robbdd_tools.world.working_area import area_within, is_on, place_before
 from robbdd_tools.world.working_area import field_before as field_before
@@ -263,7 +264,7 @@ def _fields(
     if region is None:
         raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
     x, y, z = pose.at(region.center).position
-    half, base = _flat(region.half, pose.yaw), works_at(pose, model)
+    half, base = _flat(region.half, pose_along_edges(pose, region).yaw), works_at(pose, model)
     bottom = z - region.half[2]
     if can_move(model) or region.walled:
         inner = (half[0] - radius, half[1] - radius)

@@ -13,6 +13,7 @@ from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.extent import outline_of
 from robbdd_tools.world.motion import tool_path
 from robbdd_tools.world.reaching import joints_at
+from robbdd_tools.world.region_frames import along_edges
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Region
@@ -71,7 +72,7 @@ class PushObject:
         return min(ways, key=lambda way: float(np.linalg.norm(way)))
 
     def _way_into(self, position: FloatArray, carrier: str, region: Region) -> FloatArray:
-        place, rotation = self._simulation.seen_place(carrier)
+        place, rotation = along_edges(self._simulation.seen_place(carrier), region)
         local = (rotation.T @ (position - place) - region.center)[:2]
         room = np.maximum(np.array(region.half[:2]) - INSIDE, 0.0)
         if (np.abs(local) <= room).all():

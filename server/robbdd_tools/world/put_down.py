@@ -12,6 +12,7 @@ import numpy as np
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
+from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.working_area import area_of, is_on
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) ->
 
 
 def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    position, rotation = simulation.seen_place(carrier)
+    position, rotation = along_edges(simulation.seen_place(carrier), region)
     bottom = np.array(region.center) - [0.0, 0.0, region.half[2]]
     others = _others(simulation, name, carrier)
     longest = int(np.argmax(region.half[:2]))
@@ -85,7 +86,7 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
     """Yield places on a board or tray, most room first, then by distance from the centre."""
-    position, rotation = simulation.seen_place(carrier)
+    position, rotation = along_edges(simulation.seen_place(carrier), region)
     radius = footprint(simulation.world.cast.objects[name])
     others = _others(simulation, name, carrier)
     longest = int(np.argmax(region.half[:2]))

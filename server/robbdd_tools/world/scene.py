@@ -257,7 +257,7 @@ def _stated_regions(
         for carrier in carriers(scene, box.workspace):
             if carrier in objects:
                 center = tuple(one + other for one, other in zip(objects[carrier].frame, box.offset, strict=True))
-                region = Region(vector(center), vector(edge / 2 for edge in box.size), walled=walled)
+                region = Region(vector(center), vector(edge / 2 for edge in box.size), walled=walled, turn=box.turn)
                 found[box.workspace] = (*found.get(box.workspace, ()), (carrier, region))
     return found
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.motion import frame_of, tool_pose
+from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.working_area import NEAREST, side_of
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def standing_places(
     The base is collision-free and faces the side, and from it the arm reaches a place in the workspace.
     """
     for carrier, region in simulation.world.cast.regions.get(workspace, ()):
-        position, rotation = simulation.seen_place(carrier)
+        position, rotation = along_edges(simulation.seen_place(carrier), region)
         middle = position + rotation @ np.array(region.center)
         for side in range(4):
             out, half, across = side_of(rotation, region, side)

@@ -16,6 +16,7 @@ from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, UserError, at
 from robbdd_tools.world.intactness import changed
 from robbdd_tools.world.motion import frame_of, tool_pose
+from robbdd_tools.world.region_frames import along_edges
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -122,7 +123,7 @@ class AgentWorld:
     def place(self, workspace: str) -> FloatArray:
         """Return the centre (m) of a workspace's bottom; raises ``KeyError``."""
         carrier, region = self._simulation.world.cast.regions[workspace][0]
-        position, rotation = self._simulation.seen_place(carrier)
+        position, rotation = along_edges(self._simulation.seen_place(carrier), region)
         bottom: FloatArray = np.array(region.center) - [0.0, 0.0, region.half[2]]
         return position + rotation @ bottom
 

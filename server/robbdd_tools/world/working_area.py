@@ -9,6 +9,7 @@ import numpy as np
 
 from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.world.pose import Pose
+from robbdd_tools.world.region_frames import pose_along_edges
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, ObjectModel, Region
@@ -46,6 +47,7 @@ def field_before(base: Pose, table: Pose, model: ObjectModel, area: Numbers = NO
 
 def is_on(table: Pose, region: Region, x: float, y: float) -> bool:
     """Return whether a point (m, world frame) is above or below a region of a table that may be turned."""
+    table = pose_along_edges(table, region)
     mx, my, _ = table.at(region.center).position
     dx, dy, c, s = x - mx, y - my, cos(table.yaw), sin(table.yaw)
     ahead, left = abs(c * dx + s * dy), abs(c * dy - s * dx)
@@ -54,6 +56,7 @@ def is_on(table: Pose, region: Region, x: float, y: float) -> bool:
 
 def area_of(table: Pose, region: Region) -> Area:
     """Return centre and half edges (m) of the rectangle, parallel to the world's axes, around a region of a table."""
+    table = pose_along_edges(table, region)
     x, y, _ = table.at(region.center).position
     c, s = abs(cos(table.yaw)), abs(sin(table.yaw))
     long, wide, _ = region.half
@@ -104,6 +107,7 @@ def side_of(rotation: FloatArray, region: Region, side: int) -> tuple[FloatArray
 def place_before(base: Pose, table: Pose, model: ObjectModel) -> Pose:
     """Return where a mobile base will stand at a table: in front of the middle of the side nearest to it now."""
     assert model.region is not None, "only tables with a workspace are in front of a robot"
+    table = pose_along_edges(table, model.region)
     turn = np.array([[np.cos(table.yaw), -np.sin(table.yaw)], [np.sin(table.yaw), np.cos(table.yaw)]])
     middle = np.array(table.at(model.region.center).position[:2])
     places: list[tuple[float, Pose]] = []

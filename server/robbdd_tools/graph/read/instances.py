@@ -238,8 +238,9 @@ class InstanceReader:
         for workspace in records.iris(records.all(node, "rbw:realises")):
             for box in self._list(node, "rbw:boxes"):
                 offset, size = self._numbers(box, "rbw:position") or (0.0, 0.0, 0.0), self._numbers(box, "rbw:edges")
+                turn = self._numbers(box, "rbw:orientation") or ()
                 if len(offset) == len(size) == 3 and min(size) > 0:
-                    yield WorkspaceBox(workspace, offset, size, self._places(box))
+                    yield WorkspaceBox(workspace, offset, size, turn, self._places(box))
 
     def _members(self, node: Iri) -> tuple[Iri, ...]:
         return tuple(entry for entry in self._sets.get(node, (node,)) if isinstance(entry, Iri))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.write.executions import add_python
 from robbdd_tools.graph.write.kinematics import Trees, TreeWriter
-from robbdd_tools.graph.write.rotations import numbers_of
+from robbdd_tools.graph.write.rotations import numbers_of, rotation_of
 from robbdd_tools.graph.write.units import ANGLES, LENGTHS
 from robbdd_tools.syntax import tree
 
@@ -168,6 +168,9 @@ class _InstanceWriter:
             if vector is not None:
                 metres = [sink.literal(number * LENGTHS[unit or "m"]) for number in numbers_of(vector)]
                 sink.add(node, term, sink.make_list(metres), frame.at(vector))
+        value = None if box.orientation is None else box.orientation.value
+        if value is not None and not isinstance(value, tree.Sample) and (turn := rotation_of(value)) is not None:
+            sink.add(node, "rbw:orientation", sink.make_list(map(sink.literal, turn)), frame.at(value))
         return node
 
     def _models(self, instance: URIRef, entries: Iterable[tree.Node]) -> list[URIRef | None]:
