@@ -65,6 +65,19 @@ def test_a_sound_execution_has_no_finding() -> None:
     [
         ("100 Hz", "0 Hz", "0", "an update rate cannot be 0: write a number greater than 0"),
         ("100 Hz", "9 Hz noise: -2 mm", "-2", "noise cannot be -2: write a number of at least 0"),
+        ("100 Hz", "9 Hz misses: 101 %", "101", "a share of missed observations cannot be 101: write a number from 0"),
+        (
+            "100 Hz",
+            "9 Hz range: 0 m to 1 m from obj <parts.bolt> field of view: 0 deg",
+            "0",
+            "a field of view cannot be 0: write a number greater than 0 and up to 360",
+        ),
+        (
+            "100 Hz",
+            "9 Hz range: 1 m to 30 cm from obj <parts.bolt>",
+            "1 m",
+            "the bounds are reversed: the lower one comes first",
+        ),
         ("100 Hz", "9 Hz latency: -1.5 s", "-1.5", "a latency cannot be -1.5: write a number of at least 0"),
         ("horizon: 0.5", "horizon: -0.5", "-0.5", "a horizon cannot be -0.5: write a number of at least 0"),
         ("offset: 0.02", "offset: -1", "-1", "a time offset cannot be -1: write a number of at least 0"),

@@ -12,7 +12,7 @@ from robbdd_tools.graph.acceptance_model import Execution
 from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
-from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule, View
 from robbdd_tools.protocol.recorded_log import RecordedLog
 
 X, T, ENV = "https://example.org/x/", "https://example.org/t/", "https://example.org/env/"
@@ -20,7 +20,8 @@ BDDX = """import "main.bdd"
 import "bench.scenex"
 ns x = 'https://example.org/x/'
 bhv impl (ns=x) own { py { module: my.arm, attr: Pick } }
-obs provider (ns=x) truth { simulation ground truth update-rate: 100 Hz noise: 2 mm latency: 0.05 s }
+obs provider (ns=x) truth { simulation ground truth update-rate: 100 Hz noise: 2 mm latency: 0.05 s
+    range: 30 cm to 1.5 m from var <fetch.robot> misses: 5 % }
 obs provider (ns=x) poses { ros topic: "/poses" type: "geometry_msgs/msg/PoseArray" noise: 5 mm }
 observation (ns=x) part-pose { provider: <truth> observes var <fetch.part> observes obj <furniture.tray> }
 observation (ns=x) seen-pose {
@@ -61,7 +62,8 @@ SCENEX = """import "lab.scene"
 ns s = 'https://example.org/s/'
 scene inst (ns=s) bench_mjc { scene: <bench_scene> }
 """
-TRUTH = Provider(X + "truth", "ground-truth", 100.0, 0.002, 0.05)
+VIEW = View(T + "var-robot", 0.3, 1.5)
+TRUTH = Provider(X + "truth", "ground-truth", 100.0, 0.002, 0.05, view=VIEW, misses=0.05)
 PART = Observation(X + "part-pose", TRUTH, (T + "var-part", ENV + "tray"))
 SEEN = Observation(
     X + "seen-pose",
@@ -142,3 +144,11 @@ def test_distances_are_in_metres(condition: str, form: str, bounds: tuple[float,
     text = BDDX.replace("between: 10 mm and 0.05 m", condition)
     rule = executions(text)[0].policies[1].rule
     assert (rule.form, rule.bounds) == (form, pytest.approx(bounds))
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_field_of_view_is_an_angle_in_radians(form: str) -> None:
+    execution, _ = executions(BDDX.replace("> misses", "> field of view: 60 deg misses"), form)
+    (observation, _) = execution.policies[1].observations
+    assert observation.provider.view is not None
+    assert observation.provider.view.angle == pytest.approx(math.pi / 3)

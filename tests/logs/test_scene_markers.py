@@ -64,3 +64,11 @@ def test_a_mesh_is_a_list_of_triangles() -> None:
     assert one.type == TRIANGLES
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 1, 0], [1, 0, 0]]
     assert [list(point) for point in one.points] == corners
+
+
+def test_the_marker_of_a_workspace_turns_with_its_box() -> None:
+    space = {"name": "env:bin_ws", "body": "env:part", "center": [1.0, 2.0, 3.0], "half": [0.1, 0.2, 0.3]}
+    every = [space, space | {"orientation": QUARTER}]
+    plain, turned = scene_markers({"shapes": [], "meshes": [], "workspaces": every}, {"env:part": (0.0, 0.0, -0.5)})
+    assert (plain.orientation, turned.orientation) == ((1.0, 0.0, 0.0, 0.0), QUARTER)
+    assert plain.position == turned.position == [1.0, 2.0, 3.5]

@@ -11,7 +11,7 @@ from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.feature_files import whole_plan
 from robbdd_tools.gherkin.user_template import sheet
 from robbdd_tools.graph.acceptance_model import Execution, Iri
-from robbdd_tools.monitor.policy import Policy, Rule
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule, View
 from robbdd_tools.protocol.clauses import Text
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.specs import ScenarioSpec
@@ -90,6 +90,23 @@ def test_users_code_is_told_the_arguments_of_its_clause_and_no_other(tmp_path: P
     shared = {"arm": "env:panda", "parts": ["env:bolt", "env:nut"], "how": "env:panda"}
     texts = [one.statement for one in only.clauses if isinstance(one.statement, Text)]
     assert [text.named for text in texts] == [{**shared, "x": "env:bolt"}, {**shared, "x": "env:nut"}]
+    assert read_manifest(tmp_path).scenarios == (only,)
+
+
+def test_a_policy_names_what_it_observes_and_its_sensor_like_the_scene(tmp_path: Path) -> None:
+    env = "https://example.org/env/"
+    camera = Provider("x:c", "ground-truth", 30.0, view=View(f"{env}panda", 0.3, 1.5))
+    seen = Observation("x:o", camera, (f"{env}bolt", f"{env}nut"))
+    policy = Policy("x:p", "https://example.org/t/there", Rule("python", "m:f"), observations=(seen,))
+    model = model_of(QUANTIFIED)
+    variant, built_in = model.stories[0].variants[0], Implementation("x:i", "catalog", "pick")
+    plan = replace(whole_plan(model), sheet=sheet("default"))
+    execution = Execution(Iri("x:e"), variant.iri, built_in, policies=(policy,))
+    (only,) = list(lay_out(plan, "main.bdd", 1, tmp_path, (execution,)))
+    assert only.execution is not None
+    ((observation,),) = (one.observations for one in only.execution.policies)
+    assert observation.targets == ("env:bolt", "env:nut")
+    assert observation.provider.view == View("env:panda", 0.3, 1.5)
     assert read_manifest(tmp_path).scenarios == (only,)
 
 

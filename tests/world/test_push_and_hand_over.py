@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
@@ -26,13 +27,13 @@ EVENTS = {
 }
 ZONE_XML = """<mujoco><worldbody><body name="plate">
   <geom type="box" size=".1 .1 .01" pos="0 0 -.01" friction=".6"/>
-  <site name="workspace" type="box" size=".1 .1 .1" pos="0 0 .1"/>
+  <site name="workspace" type="box" size=".1 .1 .1" pos="0 0 .1" euler="0 0 0"/>
 </body></worldbody></mujoco>"""
 
 
-def pushed(folder: Path, x: float, y: float, thing: str, seed: int) -> Execution:
+def pushed(folder: Path, x: float, y: float, thing: str, seed: int, plate: str = ZONE_XML) -> Execution:
     """Return an execution in which the Panda pushes a thing to a plate that is let into the table."""
-    (folder / "plate.xml").write_text(ZONE_XML, encoding="utf-8")
+    (folder / "plate.xml").write_text(plate, encoding="utf-8")
     source = ModelSource(
         "x:m", "mjcf", "file", "plate.xml", bodies=(("x:g.plate", ""),), origin=Origin(str(folder / "c.scenex"), 7, 11)
     )
@@ -55,6 +56,16 @@ def test_an_arm_pushes_an_object_into_a_zone(tmp_path: Path, thing: str, seed: i
     assert (np.abs(path[-1, :2] - [0.45, -0.25]) < 0.1).all()
     assert np.abs(path[0, :2] - [0.45, -0.25]).max() > 0.1
     assert np.ptp(path[:, 2]) < 0.005
+
+
+def test_an_arm_pushes_an_object_into_a_turned_zone(tmp_path: Path) -> None:
+    narrow = ZONE_XML.replace('".1 .1 .1" pos="0 0 .1" euler="0 0 0"', '".12 .04 .1" pos="0 0 .1" euler="0 0 60"')
+    run = pushed(tmp_path, 0.45, -0.25, BOX, 8, narrow)
+    assert run.completed == 1, run.course.failures
+    way = run.trace.positions[:, run.trace.column(BOX), :2] - [0.45, -0.25]
+    along = way @ [cos(pi / 3), sin(pi / 3)], way @ [-sin(pi / 3), cos(pi / 3)]
+    assert abs(along[0][-1]) < 0.12
+    assert abs(along[1][-1]) < 0.04 < abs(along[1][0])
 
 
 def test_an_arm_that_does_not_reach_behind_an_object_fails(tmp_path: Path) -> None:

@@ -9,23 +9,32 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from monitor.traces import trace_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, WorkspaceBox
+from robbdd_tools.catalog.objects.bin import BIN as CATALOG_BIN
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import During
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
+from robbdd_tools.world.composition import build_world
+from robbdd_tools.world.drawn_shapes import geometry
+from robbdd_tools.world.extent import with_walls
+from robbdd_tools.world.placement import footprint
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.put_down import targets
 from robbdd_tools.world.region_frames import along_edges, bounds_of_box, box_of, matrix_of, pose_along_edges
 from robbdd_tools.world.simulation import Simulation
+from robbdd_tools.world.standing_places import standing_places
+from robbdd_tools.world.user_behaviour import AgentWorld
 from robbdd_tools.world.working_area import area_of, is_on
-from world.scene_instances import file, instance, link
-from world.worlds import CUBE, PANDA, pick_place, scenario
+from world.scene_instances import catalog, file, instance, link
+from world.worlds import BIN, BIN_WS, CUBE, PANDA, SCENE, pick_place, scenario
 
+TRAY, TRAY_WS = "env:tray1", "env:tray1_ws"
 FIXTURE, FIXTURE_WS, ON = "env:fixture", "env:fixture_ws", ("x:g.fixture", "fixture")
 BOX = Region((0.1, 0.0, 0.2), (0.3, 0.1, 0.05))
 
@@ -171,3 +180,87 @@ def _inside(simulation: Simulation) -> bool:
     position, rotation = along_edges(simulation.seen_place(carrier), region)
     local = rotation.T @ (simulation.pose(CUBE)[0] - position) - region.center
     return bool(np.all(np.abs(local) <= np.array(region.half)))
+
+
+def boxed(scene: SceneSpec, *boxes: WorkspaceBox, seed: int = 1) -> Simulation:
+    """Return a world whose workspaces are boxes that an executable scene states."""
+    return Simulation(build_world(scene, seed, None, replace(instance(), boxes=boxes)))
+
+
+def inside_of(simulation: Simulation, workspace: str, point: ArrayLike) -> np.ndarray:
+    """Return how far (m) a point is inside each pair of a box's vertical faces."""
+    ((carrier, region),) = simulation.world.cast.regions[workspace]
+    position, rotation = along_edges(simulation.pose(carrier), region)
+    local = rotation.T @ (np.array(point) - position) - region.center
+    return (np.array(region.half) - np.abs(local))[:2]
+
+
+def test_a_hand_lets_go_along_the_longest_edge_of_a_turned_box_in_a_bin() -> None:
+    narrow = WorkspaceBox(BIN_WS, (0.0, 0.0, 0.06), (0.14, 0.02, 0.1), about_z(90.0))
+    simulation = boxed(SCENE, narrow)
+    found = list(targets(simulation, simulation.robots[PANDA], CUBE, BIN_WS))
+    assert len(found) == 3
+    for target in found:
+        assert (inside_of(simulation, BIN_WS, target.position) > 0.0).all()
+        assert abs(sin(target.closing or 0.0)) == pytest.approx(1.0)
+
+
+def test_things_lie_in_a_turned_box_of_a_tray() -> None:
+    scene = SceneSpec((CUBE, TRAY, "env:bench"), (PANDA,), {TRAY_WS: (TRAY,)}, {}, places={CUBE: TRAY_WS})
+    narrow = WorkspaceBox(TRAY_WS, (0.0, 0.0, 0.06), (0.2, 0.07, 0.1), about_z(90.0))
+    away = [boxed(scene, narrow, seed=seed) for seed in range(1, 9)]
+    found = [inside_of(simulation, TRAY_WS, simulation.pose(CUBE)[0]) for simulation in away]
+    assert np.min(found) > 0.0
+    assert np.ptp(found, axis=0)[0] > 0.03, "they lie all along it"
+
+
+def test_the_places_on_a_tray_are_in_its_turned_box() -> None:
+    scene = SceneSpec((CUBE, TRAY, "env:bench"), (PANDA,), {TRAY_WS: (TRAY,)}, {})
+    simulation = boxed(scene, WorkspaceBox(TRAY_WS, (0.0, 0.0, 0.06), (0.2, 0.06, 0.1), about_z(30.0)))
+    found = list(targets(simulation, simulation.robots[PANDA], CUBE, TRAY_WS))
+    assert len(found) == 49
+    room = footprint(simulation.world.cast.objects[CUBE])
+    assert max(float(np.linalg.norm(np.subtract(one.position, found[0].position))) for one in found) > 0.07
+    for target in found:
+        assert (inside_of(simulation, TRAY_WS, target.position) > min(room, 0.03) - 1e-9).all()
+
+
+def test_the_place_of_a_workspace_for_own_behaviours_is_the_middle_of_its_bottom() -> None:
+    simulation = boxed(SCENE, WorkspaceBox(BIN_WS, (0.0, 0.0, 0.06), (0.1, 0.1, 0.04), about_x(90.0)))
+    world = AgentWorld(simulation, PANDA, lambda _: None)
+    (position, rotation), frame = simulation.pose(BIN), simulation.world.cast.objects[BIN].frame
+    middle = position + rotation @ np.add(frame, (0.0, 0.0, 0.06))
+    # Its z axis is along −y of the bin.
+    assert world.place(BIN_WS) == pytest.approx(middle + rotation @ [0.0, 0.02, 0.0])
+
+
+def test_a_mobile_base_stands_in_front_of_the_sides_of_a_turned_box() -> None:
+    rover, table, table_ws = "env:rover", "env:table", "env:table_ws"
+    scene = SceneSpec((table,), (rover,), {table_ws: (table,)}, {})
+    cell = instance(
+        link("x:g.table.foot", (1.5, 0.0, 0.1)),
+        link("x:g.base.foot", (0.0, -0.5, -0.65)),
+        elements=(catalog(table, "table", "x:g.table"), catalog(rover, "mobile-panda", "x:g.base")),
+    )
+    box = WorkspaceBox(table_ws, (0.0, 0.0, 0.1), (0.6, 0.4, 0.2), about_z(30.0))
+    simulation = Simulation(build_world(scene, 1, None, replace(cell, boxes=(box,))))
+    found = list(standing_places(simulation, simulation.robots[rover], table_ws, lambda _: True))
+    assert len(found) == 4
+    assert [np.degrees(pose[2]) % 90.0 for pose in found] == pytest.approx([30.0] * 4)
+
+
+def test_a_drawing_has_the_rotation_of_a_turned_box_only() -> None:
+    simulation = boxed(SCENE, WorkspaceBox(BIN_WS, (0.0, 0.0, 0.06), (0.1, 0.1, 0.04), about_z(20.0)))
+    drawn = geometry(simulation.model, {}, simulation.world.cast.regions)["workspaces"]
+    turned = {one["name"]: one.get("orientation") for one in drawn}
+    assert turned == {BIN_WS: pytest.approx(list(about_z(20.0)))} | dict.fromkeys(set(turned) - {BIN_WS})
+    assert len(turned) > 1
+
+
+def test_the_walls_of_a_turned_site_are_beside_the_box_around_it() -> None:
+    region = CATALOG_BIN.region
+    assert region is not None
+    long, wide, high = region.half
+    quarter = replace(region, half=(wide, long, high), turn=about_z(90.0))
+    assert with_walls(quarter, CATALOG_BIN.shapes).walled
+    assert not with_walls(replace(quarter, turn=()), CATALOG_BIN.shapes).walled

@@ -73,8 +73,10 @@ def number_range(site: Site) -> Iterator[Diagnostic]:
         fixes = _fixes(site, number, quantity)
         yield finding(site, number, Severity.ERROR, CODE, message, fixes=fixes)
     match site.tree:
-        case tree.Policy():
-            yield from _swapped(site, site.tree)
+        case tree.Policy(rule=tree.Evaluation(evaluator=tree.LinearDistance(condition=tree.Between() as between))):
+            yield from _swapped(site, between.lower, between.upper)
+        case tree.Provider(source=tree.GroundTruth(view=tree.SensorView() as view)):
+            yield from _swapped(site, view.nearest, view.farthest)
         case tree.SceneInstance() | tree.KinematicTree():
             yield from _reversed_limits(site, site.tree)
         case _:
@@ -102,6 +104,9 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
             yield from ((node.horizon, _Quantity("a horizon")), (node.sigma, _SIGMA))
         case tree.GroundTruth():
             yield from ((node.rate, _RATE), (node.noise, _NOISE), (node.latency, _Quantity("a latency")))
+            yield node.misses, _Quantity("a share of missed observations", high=100.0)
+        case tree.SensorView():
+            yield node.angle, _Quantity("a field of view", high=360.0, above=True)
         case tree.Camera():
             yield node.rate, _RATE
             yield node.fov, _Quantity("a field of view", high=_WHOLE_TURN[node.fov_unit], above=True)
@@ -177,12 +182,9 @@ def _reversed(site: Site, low: tree.Node, high: tree.Node) -> Diagnostic:
     return finding(site, low, Severity.ERROR, CODE, message, fixes=(Fix("Swap the bounds", edits),))
 
 
-def _swapped(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
-    rule = policy.rule
-    distance = rule.evaluator if isinstance(rule, tree.Evaluation) else None
-    between = distance.condition if isinstance(distance, tree.LinearDistance) else None
-    if isinstance(between, tree.Between) and _metres(between.lower) > _metres(between.upper):
-        yield _reversed(site, between.lower, between.upper)
+def _swapped(site: Site, low: tree.Distance, high: tree.Distance) -> Iterator[Diagnostic]:
+    if _metres(low) > _metres(high):
+        yield _reversed(site, low, high)
 
 
 def _metres(distance: tree.Distance) -> float:

@@ -8,22 +8,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.catalog.geometry import out_of_frame
+from robbdd_tools.judging.detection import failures, last_seen, words_of
 from robbdd_tools.monitor.unobserved import Unobserved
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Evidence, FloatArray
-    from robbdd_tools.monitor.policy import Observation
+    from robbdd_tools.judging.detection import Codes
+    from robbdd_tools.monitor.policy import Observation, Provider
 
+LONGEST_GAP = 0.5
+"""Nothing is known of an element that was not seen for longer than this (s), as in a log by default."""
 SOURCES = {"topic": "a ROS topic", "entity-state": "ROS entity states", "transforms": "ROS transforms"}
 
 
 class Stream:
     """The observations of one element that are known at each sample of a window.
 
-    The provider observes at the times k / rate. An observation is known after the latency. Each axis has noise that
-    depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known positions, and ``stamps``
-    (n,) s are the times at which they were observed. The samples of a log are already observations and are used
-    unchanged. Raises ``Unobserved`` if the simulation does not have the provider, or if no observation is known yet.
+    The provider observes at the times k / rate, if its sensor sees the element then. An observation is known after the
+    latency. Each axis has noise that depends only on the seed, the observation and k. ``positions`` (n, 3) m are the
+    last known positions, and ``stamps`` (n,) s are the times at which they were observed. The samples of a log are
+    already observations and are used unchanged. Raises ``Unobserved`` if the simulation does not have the provider, if
+    no observation is known yet, or if the last one is ``LONGEST_GAP`` older than usual.
     """
 
     def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:
@@ -43,9 +48,35 @@ class Stream:
         if looks.min(initial=0) < 0:
             first = float(evidence.times[int(np.argmin(looks))])
             raise Unobserved(f"nothing was known of {target} at {first:.2f} s: it is seen {provider.latency:g} s later")
-        self.stamps = looks / rate
-        noise = _noise(seed, f"{observation.iri} {target}", int(looks.max(initial=0)) + 1) * provider.noise
-        self.positions = _truth(evidence, target, self.stamps) + noise[looks]
+        ticks = np.arange(int(looks.max(initial=0)) + 1)
+        name = f"{observation.iri} {target}"
+        codes = _failures(provider, target, evidence, ticks / rate, _random(seed, f"{name} misses"))
+        latest = last_seen(codes)
+        unseen = np.flatnonzero((latest[looks] < 0) | (looks - latest[looks] > LONGEST_GAP * rate))
+        if unseen.size:
+            look = int(looks[unseen[0]])
+            raise Unobserved(_gap(target, latest[look] / rate, look / rate, words_of(int(codes[look]), provider.view)))
+        self.stamps = latest[looks] / rate
+        noise = _random(seed, name).standard_normal((len(ticks), 3)) * provider.noise
+        self.positions = _truth(evidence, target, self.stamps) + noise[latest[looks]]
+
+
+def _failures(
+    provider: Provider, target: str, evidence: Evidence, times: FloatArray, random: np.random.Generator
+) -> Codes:
+    chances = random.random(len(times))
+    places = _truth(evidence, target, times)
+    if provider.view is None:
+        return failures(provider, places, (places, places), chances)
+    carrier = provider.view.sensor
+    sensor = evidence.position_at(carrier, times), evidence.orientation_at(carrier, times)
+    return failures(provider, places, sensor, chances)
+
+
+def _gap(target: str, start: float, end: float, why: str) -> str:
+    if start < 0:
+        return f"nothing was known of {target} at {end:.2f} s: {why}"
+    return f"{target} was not observed between {start:.2f} s and {end:.2f} s: {why}"
 
 
 def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
@@ -60,7 +91,7 @@ def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
     return out_of_frame(region.center, evidence.position_at(carrier, stamps), evidence.orientation_at(carrier, stamps))
 
 
-def _noise(seed: int, name: str, count: int) -> FloatArray:
-    """Return normally distributed numbers (count, 3). A longer array begins with the numbers of a shorter one."""
+def _random(seed: int, name: str) -> np.random.Generator:
+    """Return a generator for an observation. A longer array of its numbers begins with those of a shorter one."""
     digest = hashlib.sha256(f"{seed} {name}".encode()).digest()
-    return np.random.default_rng(int.from_bytes(digest[:8], "big")).standard_normal((count, 3))
+    return np.random.default_rng(int.from_bytes(digest[:8], "big"))

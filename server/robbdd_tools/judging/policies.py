@@ -103,12 +103,19 @@ class Judge:
     def _streams(self, evidence: Evidence) -> list[Stream]:
         found: list[Stream] = []
         for observation in self.policy.observations:
-            for target in observation.targets:
-                value: object = self.spec.values.get(target, self.own.get(plain_name(target), target))
-                if not isinstance(value, str):
-                    raise Unobserved(f"the observed target must be one element, but {target} is {value}")
-                found.append(Stream(observation, value, evidence, self.spec.seed))
+            provider, view = observation.provider, observation.provider.view
+            if view is not None:
+                provider = replace(provider, view=replace(view, sensor=self._element(view.sensor)))
+            seen = replace(observation, provider=provider)
+            found += [Stream(seen, self._element(one), evidence, self.spec.seed) for one in observation.targets]
         return found
+
+    def _element(self, target: str) -> str:
+        """Return the element that a target stands for, if it is a variable. Raises ``Unobserved`` for a set."""
+        value: object = self.spec.values.get(target, self.own.get(plain_name(target), target))
+        if not isinstance(value, str):
+            raise Unobserved(f"the observed target must be one element, but {target} is {value}")
+        return value
 
     def _by_code(self, name: str, evidence: Observed) -> FloatArray:
         arguments = {**{plain_name(variable): value for variable, value in self.spec.values.items()}, **self.own}

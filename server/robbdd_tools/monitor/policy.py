@@ -10,6 +10,19 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
+class View:
+    """The limits of a sensor: it sees elements from ``nearest`` to ``farthest`` (m) away from its carrier ``sensor``.
+
+    With an ``angle`` (rad), only those in the cone with this opening angle around the carrier's z axis.
+    """
+
+    sensor: str
+    nearest: float
+    farthest: float
+    angle: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Provider:
     """A source of observations.
 
@@ -19,6 +32,8 @@ class Provider:
     - ``latency``: the age of an observation in s, for ground truth.
     - ``source``: the topic or the reference frame.
     - ``type``: the message type of the topic.
+    - ``view``: what the sensor can see; ``None`` if it sees everything.
+    - ``misses``: the probability that an observation of a visible element fails.
     """
 
     iri: str
@@ -28,6 +43,8 @@ class Provider:
     latency: float = 0.0
     source: str = ""
     type: str = ""
+    view: View | None = None
+    misses: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,7 +123,11 @@ class SpecWriter:
 
     def _observation(self, observation: Observation) -> Observation:
         mapped = tuple((text, self._curie(target)) for text, target in observation.mapped)
-        return replace(observation, targets=tuple(map(self._curie, observation.targets)), mapped=mapped)
+        provider, view = observation.provider, observation.provider.view
+        if view is not None:
+            provider = replace(provider, view=replace(view, sensor=self._curie(view.sensor)))
+        targets = tuple(map(self._curie, observation.targets))
+        return replace(observation, provider=provider, targets=targets, mapped=mapped)
 
     def specs(self, feature: str, story: Iri, scenario: ScenarioText, repeat: int = 1) -> Iterator[ScenarioSpec]:
         """Yield one specification for each repetition of a scenario in a feature.

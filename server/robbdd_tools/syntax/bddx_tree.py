@@ -81,8 +81,18 @@ class Transforms(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class SensorView(Node):
+    """``range: … to … from target [field of view: … deg]``."""
+
+    nearest: Distance
+    farthest: Distance
+    sensor: Link
+    angle: Number | None
+
+
+@dataclass(frozen=True, slots=True)
 class GroundTruth(Node):
-    """``simulation ground truth update-rate: … Hz [noise: … unit] [latency: … s]``.
+    """``simulation ground truth update-rate: … Hz [noise: … unit] [latency: … s] [range: …] [misses: … %]``.
 
     ``noise`` is the standard deviation of a position along each axis.
     """
@@ -91,6 +101,8 @@ class GroundTruth(Node):
     noise: Number | None
     noise_unit: str | None
     latency: Number | None
+    view: SensorView | None
+    misses: Number | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from robbdd_tools.graph.acceptance_model import Execution, Iri
 from robbdd_tools.graph.rdf.records import Incomplete, Records
 from robbdd_tools.graph.read.instances import InstanceReader, Places, number, python_name
 from robbdd_tools.graph.read.robot_logs import read_log_of
-from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule, View
 
 if TYPE_CHECKING:
     from rdflib.term import Node
@@ -141,4 +141,14 @@ def _provider(records: Records, node: Iri) -> Provider:
         number(records, node, "rbw:latency-seconds") or 0.0,
         records.text(node, "rbw:ros-name"),
         records.text(node, "rbw:message-type"),
+        _view(records, node),
+        number(records, node, "rbw:missed-share") or 0.0,
     )
+
+
+def _view(records: Records, node: Iri) -> View | None:
+    nearest, farthest = number(records, node, "rbw:nearest-metres"), number(records, node, "rbw:farthest-metres")
+    if nearest is None or farthest is None:
+        return None
+    angle = number(records, node, "rbw:field-of-view-radians")
+    return View(records.one(node, "rbw:seen-from"), nearest, farthest, angle)

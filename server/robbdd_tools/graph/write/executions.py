@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.write.robot_logs import add_log
-from robbdd_tools.graph.write.units import LENGTHS
+from robbdd_tools.graph.write.units import ANGLES, LENGTHS
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -102,6 +102,9 @@ def _add_provider(frame: Frame, root: tree.Provider) -> None:
         case tree.GroundTruth():
             frame.sink.add_types(node, ["rbw:GroundTruth"], place)
             _number(frame, node, "rbw:latency-seconds", source.latency)
+            _number(frame, node, "rbw:missed-share", source.misses, 0.01)
+            if source.view is not None:
+                _add_view(frame, node, source.view)
         case tree.RosTopic():
             frame.sink.add_types(node, ["rbw:RosTopic"], place)
             _say(frame, node, "rbw:ros-name", source.topic.value, source.topic)
@@ -115,6 +118,14 @@ def _add_provider(frame: Frame, root: tree.Provider) -> None:
         _number(frame, node, "rbw:noise-metres", source.noise, LENGTHS.get(source.noise_unit or "m", 1.0))
     if not isinstance(source, tree.RosTopic):
         _number(frame, node, "rbw:rate-hertz", source.rate)
+
+
+def _add_view(frame: Frame, node: URIRef, view: tree.SensorView) -> None:
+    sensor = view.sensor.reference
+    frame.sink.add(node, "rbw:seen-from", frame.target(sensor), frame.at(sensor))
+    for term, distance in (("rbw:nearest-metres", view.nearest), ("rbw:farthest-metres", view.farthest)):
+        _number(frame, node, term, distance.value, LENGTHS[distance.unit])
+    _number(frame, node, "rbw:field-of-view-radians", view.angle, ANGLES["deg"])
 
 
 def _add_observation(frame: Frame, root: tree.Observation) -> None:
