@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import Implementation, ModelSource, Realisation
-from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
+from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.pose import Pose
-from robbdd_tools.world.tilted_base import rotation_of, upright_part
+from robbdd_tools.world.tilted_base import UPRIGHT, Tilt, far_from_tables, rotation_of, tilt_of, upright_part
 from world import strangers
 from world.arms import MJCF
-from world.arms_from_files import ARM, source
-from world.scene_instances import instance, link
+from world.arms_from_files import ARM, robot, source
+from world.scene_instances import file, instance, link
 from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
 
 HALF = 0.5**0.5
@@ -88,12 +88,79 @@ def test_a_hanging_arm_has_no_pedestal(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("turn", "yaw"), [(HANGING, 0.0), (ON_WALL, 0.0), (LEANING, 0.0), ((0.0, 0.0, 1.0, 0.0), pi)])
 def test_ahead_is_where_the_base_points_to(turn: tuple[float, float, float, float], yaw: float) -> None:
-    base, tilt = upright_part(Pose((1.0, 2.0, 1.234), 0.3, turn))
+    pose = Pose((1.0, 2.0, 1.234), 0.3, turn)
+    (base, _), tilt = upright_part(pose), tilt_of(pose, 0.4)
     assert tilt is not None
-    assert (base.position, base.rotation, tilt.height) == ((1.0, 2.0, 1.234), (), 1.23)
+    assert (base.position, base.rotation, tilt.height) == ((1.0, 2.0, 1.234), (), 0.83)
     assert abs(base.yaw) == pytest.approx(yaw)
     back = np.array(rotation_of(base.yaw, tilt.rotation))
     assert abs(back @ np.array(turn)) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("height", "rise", "expected"),
+    [
+        (0.15, 0.0, None),
+        (0.83, 0.68, None),
+        (0.49, 0.0, None),
+        (0.0, 0.68, Tilt(UPRIGHT, -0.68)),
+        (-0.65, 0.0, Tilt(UPRIGHT, -0.65)),
+        (1.6, 0.8, Tilt(UPRIGHT, 0.8)),
+    ],
+)
+def test_an_upright_base_far_from_the_tables_works_at_their_height(
+    height: float, rise: float, expected: Tilt | None
+) -> None:
+    assert far_from_tables(Pose((0.0, 0.0, height)), rise) == expected
+
+
+HUNG = strangers.SIX.replace('<body name="b0">', '<body name="b0" euler="180 0 0">')
+"""An arm that hangs in its own file."""
+COUNTER, COUNTER_WS = "env:counter", "env:counter_ws"
+
+
+def above_counter(folder: Path, text: str, turn: tuple[float, ...], base: float) -> Execution:
+    """Return an execution in which an arm hangs above a counter whose top is 0.9 m above the world's origin."""
+    (folder / "arm.xml").write_text(text, encoding="utf-8")
+    origin = Origin(str(folder / "cell.scenex"), 3, 7)
+    arm = ModelSource("x:arm", "mjcf", "file", "arm.xml", bodies=((FOOT, ""),), origin=origin)
+    board = '<body name="counter"><geom type="box" size=".6 .6 .02" pos="0 0 -.02"/></body>'
+    text = f"<mujoco><worldbody>{board}</worldbody></mujoco>"
+    counter = file(folder, COUNTER, text, ("x:g.counter", "counter"))
+    cell = instance(
+        link(FRAME, (0.0, 0.0, base), turn=turn),
+        link("x:g.counter.top", (0.2, 0.0, 0.9)),
+        elements=(Realisation(ARM, (arm,)), counter),
+    )
+    scene = SceneSpec((CUBE, COUNTER), (ARM,), {COUNTER_WS: (COUNTER,)}, {}, places={CUBE: COUNTER_WS})
+    run = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), cell)
+    return Execution(replace(scenario(scene, 1), execution=run), [pick_place(CUBE, COUNTER_WS, ARM)])
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(
+    ("text", "turn"), [(strangers.SIX, HANGING), (HUNG, (1.0, 0.0, 0.0, 0.0))], ids=["hung", "hangs in its file"]
+)
+def test_an_arm_hangs_above_a_counter_whose_world_begins_at_the_floor(
+    tmp_path: Path, text: str, turn: tuple[float, ...]
+) -> None:
+    run = above_counter(tmp_path, text, turn, 1.85)
+    tool, axes = run.simulation.tool(run.simulation.robots[ARM])
+    assert 0.9 + 0.1 < tool[2] < 0.9 + 0.7
+    assert axes[2, 2] < -0.99, "the tool points down"
+    names = [run.simulation.model.body(body).name for body in range(run.simulation.model.nbody)]
+    assert not [name for name in names if name.endswith("column")]
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_an_arm_that_hangs_in_its_file_has_a_home_below_its_base(tmp_path: Path) -> None:
+    hanging, standing = (
+        arm_of(robot(tmp_path, text, name=name)) for text, name in ((HUNG, "h.xml"), (strangers.SIX, "s.xml"))
+    )
+    for arm, below in ((hanging, True), (standing, False)):
+        place, axes = arm.forward(arm.home)
+        assert (place[2] < 0.0, arm.hangs) == (below, below)
+        assert axes[2, 2] < -0.99
 
 
 def test_a_robot_that_drives_stands_upright() -> None:

@@ -69,6 +69,7 @@ class Arm:
         self._data: Any = mujoco.MjData(self._model)
         self._site = int(self._model.site(robot.tool_site).id)
         joints = [self._model.joint(name) for name in robot.joints]
+        self._numbers = [int(joint.id) for joint in joints]
         self._places = np.array([joint.qposadr[0] for joint in joints])
         self._speeds = np.array([joint.dofadr[0] for joint in joints])
         self._coupled = coupled_by_name(self._model, robot.joints)
@@ -97,6 +98,17 @@ class Arm:
         self._coupled.place(self._data.qpos)
         mujoco.mj_kinematics(self._model, self._data)
         return self._position.copy(), self._rotation.reshape(3, 3).copy()
+
+    @cached_property
+    def hangs(self) -> bool:
+        """Whether nothing below the base carries the arm: its second joint is below the base, or it is a gantry.
+
+        The first joint of a gantry slides sideways, and its tool is below its base.
+        """
+        place, _ = self.forward(self.home)
+        first, second = self._numbers[0], self._numbers[:2][-1]
+        is_sideways = not self.turning[0] and abs(float(self._data.xaxis[first, 2])) < VERTICAL
+        return float(self._data.xanchor[second, 2]) < -LEVEL or (is_sideways and float(place[2]) < 0.0)
 
     @cached_property
     def stroke(self) -> tuple[float, float]:

@@ -14,6 +14,7 @@ import numpy as np
 from robbdd_tools.base.solid_shapes import Solid, SolidKind
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
+from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
@@ -268,7 +269,7 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     _attach(spec, child, f"{name}/", frame)
     pairs = apart
     # The thing that carries an arm is part of the scene.
-    if mobile is None and robot.tilt == UPRIGHT:
+    if mobile is None and robot.tilt == UPRIGHT and not arm_of(robot).hangs:
         _add_column(spec, name, base, THINGS | robots)
         pairs = [*apart, *((COLUMN, body) for body in beside_base)]
     for one, other in pairs:

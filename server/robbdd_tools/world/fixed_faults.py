@@ -20,6 +20,7 @@ from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.scene import Cast
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.staging import Staging
+from robbdd_tools.world.table_rise import rise_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, RobotModel
@@ -48,7 +49,7 @@ def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
         yield error
         return
     placed = Placed()
-    for one in instance.elements:
+    for one in things_first(instance):
         try:
             place(one, staging, placed, other)
         except SceneError as error:
@@ -57,6 +58,11 @@ def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
         refuse_overlaps(simulated(staging, placed))
     except SceneError as error:
         yield error
+
+
+def things_first(instance: SceneInstance) -> list[Realisation]:
+    """Return the elements of a scene instance with agents last: their homes depend on the heights of tables."""
+    return sorted(instance.elements, key=lambda one: one.is_agent)
 
 
 def without_code(instance: SceneInstance) -> SceneInstance:
@@ -88,7 +94,7 @@ def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | N
     """
     name = one.element
     if one.is_agent and staging.bystander(name) is None:
-        robot, base = staging.robot(name), staging.base(name)
+        robot, base = staging.robot(name, rise_of(placed.objects, placed.poses.get)), staging.base(name)
         if robot is not None and base is not None and (other is None or base == other.base(name)):
             placed.agents[name], placed.poses[name] = robot, base
         return

@@ -26,6 +26,8 @@ CLOSE = 1e-3
 """A posture is accepted if its pose error is below this (m and rad)."""
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15, 0.08, 0.03)
 """Places of the tool: shares of the reach ahead of the base, and heights (m) above it, low ones for desktop arms."""
+BELOW = (-0.30, -0.45, -0.60, -0.80, -0.15)
+"""Heights (m) of the tool of an arm that hangs in its own file."""
 TRAVEL, GRASP = (0.35, 0.45, 0.25, 0.60, 0.80), (0.30, 0.15)
 """Heights (m) above the world's origin for a tilted arm: it works at the heights of tables, wherever it is fixed.
 
@@ -80,9 +82,10 @@ class _Search:
         self, model: Any, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str, height: float | None
     ) -> None:
         self._model = model
-        self._heights, self._levels = HEIGHTS, LEVELS
+        self._heights, self._levels = (*HEIGHTS, *BELOW), LEVELS
         if height is not None:
-            self._heights = tuple(one - height for one in TRAVEL)
+            # A base far above the tables may stand on a pedestal, from which its arm does not reach them.
+            self._heights = (*(one - height for one in TRAVEL), *HEIGHTS)
             self._levels = tuple(one - height for one in GRASP)
         self._data: Any = mujoco.MjData(model)
         for name, value in fingers.items():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.world.drawn_shapes import DIGITS, geometry
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.fixed_faults import SEEDS, Placed, place, simulated, without_code
+from robbdd_tools.world.fixed_faults import SEEDS, Placed, place, simulated, things_first, without_code
 from robbdd_tools.world.log_views import drawn_bodies
 from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.staging import Staging
@@ -28,7 +28,7 @@ def drawn_instance(instance: SceneInstance) -> tuple[dict[str, Any], list[SceneE
     drawn: dict[str, Any] = {"shapes": [], "meshes": [], "workspaces": [], "bodies": [], "sampled": []}
     try:
         staging, other = (Staging(known, seed) for seed in SEEDS)
-        for one in known.elements:
+        for one in things_first(known):
             try:
                 place(one, staging, sampled)
                 place(one, staging, placed, other)

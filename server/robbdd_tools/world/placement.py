@@ -21,6 +21,7 @@ from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.region_frames import pose_along_edges
 from robbdd_tools.world.scene import carriers
+from robbdd_tools.world.table_rise import TABLE_TOP as TABLE_TOP
 from robbdd_tools.world.working_area import area_within, is_on, place_before
 from robbdd_tools.world.working_area import field_before as field_before
 
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import SceneSpec
     from robbdd_tools.world.scene import Cast
 
-TABLE_TOP = 0.10
-"""Height (m) of table tops above the world's origin. The paper does not define it, as it has its own world frame."""
 FLOOR = TABLE_TOP - HEIGHT
 """Height of the floor, m, world frame."""
 BEARING = 2.6

@@ -14,6 +14,7 @@ from robbdd_tools.world.extent import carrying, centred
 from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.resizing import extent_of
 from robbdd_tools.world.scene_configuration import Configured, configure
+from robbdd_tools.world.table_rise import rise_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -122,9 +123,10 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
             left_out.append(name)
         else:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
+    rise = 0.0 if staging is None else rise_of(_carriers_among(scene, objects), staging.pose)
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
-        model = _agent_model(scene, staging, name)
+        model = _agent_model(scene, staging, name, rise)
         # Bystanders are present only where an executable scene places them.
         if name in scene.unused and (model is None or staging is None or staging.base(name) is None):
             left_out.append(name)
@@ -178,9 +180,14 @@ def _stated(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[Co
             yield one
 
 
-def _agent_model(scene: SceneSpec, staging: Staging | None, name: str) -> RobotModel | ObjectModel | None:
+def _carriers_among(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, ObjectModel]:
+    carry = {name for own in scene.workspaces.values() for name in own}
+    return {name: model for name, model in objects.items() if model.region is not None or name in carry}
+
+
+def _agent_model(scene: SceneSpec, staging: Staging | None, name: str, rise: float) -> RobotModel | ObjectModel | None:
     """Return the model of an agent: a robot's, or an object's if the agent is a bystander. Raises ``SceneError``."""
-    stated = None if staging is None else staging.bystander(name) or staging.robot(name)
+    stated = None if staging is None else staging.bystander(name) or staging.robot(name, rise)
     catalog, names = load_catalog(), (local_name(name), scene.sets.get(name, ()))
     return stated or catalog.robot_for(*names) or catalog.bystander_for(*names)
 

@@ -22,7 +22,7 @@ from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.owners import SCENERY, is_scenery, scenery_name, shape_name
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.robot_files import FLOOR, prepared_robot, robot_from
-from robbdd_tools.world.tilted_base import on_the_floor, upright_part
+from robbdd_tools.world.tilted_base import far_from_tables, tilt_of, upright_part
 from robbdd_tools.world.tilted_robots import tilted
 
 if TYPE_CHECKING:
@@ -197,13 +197,16 @@ class Staging:
         chosen = self._source(element)
         return load_catalog().bystanders.get(chosen.name) if chosen is not None and chosen.kind == "catalog" else None
 
-    def robot(self, element: str) -> RobotModel | None:
-        """Return the model of an agent, ``None`` if not defined; raises ``SceneError``."""
+    def robot(self, element: str, rise: float = 0.0) -> RobotModel | None:
+        """Return the model of an agent, ``None`` if not defined; raises ``SceneError``.
+
+        The tables are higher than usual by ``rise`` (m).
+        """
         chosen = self._source(element)
         if chosen is None:
             return None
         placed = self.pose(element)
-        tilt = None if placed is None else upright_part(placed)[1]
+        tilt = None if placed is None else tilt_of(placed, rise)
         if chosen.kind == "catalog":
             found = load_catalog().robots.get(chosen.name)
             if found is None:
@@ -211,7 +214,7 @@ class Staging:
             turned = tilted(found, tilt, chosen)
             _refuse_above_floor(turned, placed, chosen)
             return turned
-        found = robot_from(chosen, element, tilt or (None if placed is None else on_the_floor(placed)))
+        found = robot_from(chosen, element, tilt or (None if placed is None else far_from_tables(placed, rise)))
         if not any(element in (friction.first, friction.second) for friction in self.frictions):
             refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
         _refuse_above_floor(found, placed, chosen)

@@ -20,22 +20,26 @@ if TYPE_CHECKING:
 Quaternion = tuple[float, float, float, float]
 """w, x, y, z."""
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
-LOW = -0.3
-"""A base below this height (m, world frame) stands on the floor: its arm works above it, at the height of tables."""
+LOW, HIGH = -0.3, 0.5
+"""A base below or above these heights (m above the origin of a usual cell) works far above or below itself, at the
+height of tables: it stands on the floor, or on top of a gantry."""
 LYING = 0.1
 """The direction of a unit axis is known if its horizontal part is longer than this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """The rotation (w, x, y, z) of a base relative to its upright base, and its height (m, world frame, rounded)."""
+    """The rotation (w, x, y, z) of a base relative to its upright base, and its height (m, rounded).
+
+    The height is above the origin of a usual cell, whose tables are ``TABLE_TOP`` (m) high.
+    """
 
     rotation: Quaternion
     height: float
 
 
-def upright_part(pose: Pose) -> tuple[Pose, Tilt | None]:
-    """Return the upright pose of a base, and the tilt of the base from it, if any.
+def upright_part(pose: Pose) -> tuple[Pose, Quaternion | None]:
+    """Return the upright pose of a base, and the rotation of the base relative to it, if any.
 
     The x axis of the base points ahead. If it is vertical, as may happen for an arm on a wall, the z axis points ahead.
     """
@@ -49,12 +53,19 @@ def upright_part(pose: Pose) -> tuple[Pose, Tilt | None]:
     tilt: FloatArray = np.empty(4)
     mujoco.mju_mulQuat(tilt, about_vertical(-yaw), np.array(pose.rotation))
     w, i, j, k = (round(float(part), 9) for part in tilt)
-    return replace(pose, yaw=yaw, rotation=()), Tilt((w, i, j, k), round(pose.position[2], 2))
+    return replace(pose, yaw=yaw, rotation=()), (w, i, j, k)
 
 
-def on_the_floor(pose: Pose) -> Tilt | None:
-    """Return the height of an upright base that is far below the tables, without a tilt; ``None`` for others."""
-    return None if pose.position[2] > LOW else Tilt(UPRIGHT, round(pose.position[2], 2))
+def tilt_of(pose: Pose, rise: float) -> Tilt | None:
+    """Return the tilt of a base in a cell whose tables are higher than usual by ``rise`` (m); ``None`` if upright."""
+    rotation = upright_part(pose)[1]
+    return None if rotation is None else Tilt(rotation, round(pose.position[2] - rise, 2))
+
+
+def far_from_tables(pose: Pose, rise: float) -> Tilt | None:
+    """Return the height of an upright base that is far below or above the tables; ``None`` for others."""
+    height = round(pose.position[2] - rise, 2)
+    return None if LOW < height < HIGH else Tilt(UPRIGHT, height)
 
 
 def about_vertical(yaw: float) -> FloatArray:
