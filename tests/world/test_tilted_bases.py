@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation
+from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation, SceneInstance
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.fixed_faults import fixed_faults
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.tilted_base import UPRIGHT, Tilt, far_from_tables, rotation_of, tilt_of, upright_part
 from world import strangers
@@ -119,19 +120,23 @@ HUNG = strangers.SIX.replace('<body name="b0">', '<body name="b0" euler="180 0 0
 COUNTER, COUNTER_WS = "env:counter", "env:counter_ws"
 
 
-def above_counter(folder: Path, text: str, turn: tuple[float, ...], base: float) -> Execution:
-    """Return an execution in which an arm hangs above a counter whose top is 0.9 m above the world's origin."""
+def above_counter(folder: Path, text: str, turn: tuple[float, ...], base: float) -> SceneInstance:
+    """Return a cell in which an arm hangs above a counter whose top is 0.9 m above the world's origin."""
     (folder / "arm.xml").write_text(text, encoding="utf-8")
     origin = Origin(str(folder / "cell.scenex"), 3, 7)
     arm = ModelSource("x:arm", "mjcf", "file", "arm.xml", bodies=((FOOT, ""),), origin=origin)
     board = '<body name="counter"><geom type="box" size=".6 .6 .02" pos="0 0 -.02"/></body>'
     text = f"<mujoco><worldbody>{board}</worldbody></mujoco>"
     counter = file(folder, COUNTER, text, ("x:g.counter", "counter"))
-    cell = instance(
+    return instance(
         link(FRAME, (0.0, 0.0, base), turn=turn),
         link("x:g.counter.top", (0.2, 0.0, 0.9)),
-        elements=(Realisation(ARM, (arm,)), counter),
+        elements=(Realisation(ARM, (arm,), is_agent=True), counter),
     )
+
+
+def carried(cell: SceneInstance) -> Execution:
+    """Return the execution in which the arm above the counter picks up a cube and puts it down there."""
     scene = SceneSpec((CUBE, COUNTER), (ARM,), {COUNTER_WS: (COUNTER,)}, {}, places={CUBE: COUNTER_WS})
     run = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), cell)
     return Execution(replace(scenario(scene, 1), execution=run), [pick_place(CUBE, COUNTER_WS, ARM)])
@@ -144,7 +149,7 @@ def above_counter(folder: Path, text: str, turn: tuple[float, ...], base: float)
 def test_an_arm_hangs_above_a_counter_whose_world_begins_at_the_floor(
     tmp_path: Path, text: str, turn: tuple[float, ...]
 ) -> None:
-    run = above_counter(tmp_path, text, turn, 1.85)
+    run = carried(above_counter(tmp_path, text, turn, 1.85))
     tool, axes = run.simulation.tool(run.simulation.robots[ARM])
     assert 0.9 + 0.1 < tool[2] < 0.9 + 0.7
     assert axes[2, 2] < -0.99, "the tool points down"
@@ -168,3 +173,45 @@ def test_a_robot_that_drives_stands_upright() -> None:
     cell = instance(link(FRAME, (0.0, 0.0, 1.0), turn=HANGING), elements=(Realisation(ARM, (placed,)),))
     with pytest.raises(SceneError, match="drives on the floor, so its base cannot be tilted"):
         build_world(replace(SCENE, agents=(ARM,)), 1, instance=cell)
+
+
+def test_an_arm_above_a_high_counter_does_not_overlap_it_while_editing(tmp_path: Path) -> None:
+    cell = above_counter(tmp_path, strangers.SIX, HANGING, 1.7)
+    assert [str(fault) for fault in fixed_faults(cell)] == []
+
+
+GANTRY = (
+    """<robot name="gantry"><link name="beam"/>
+<joint name="x" type="prismatic"><parent link="beam"/><child link="a"/><axis xyz="1 0 0"/>
+<limit lower="-.4" upper=".6" effort="400" velocity="1"/></joint>
+<joint name="y" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
+<limit lower="-.5" upper=".5" effort="400" velocity="1"/></joint>
+<joint name="z" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+<limit lower="-.6" upper="0" effort="400" velocity="1"/></joint>
+<joint name="c" type="revolute"><parent link="c"/><child link="d"/><origin xyz="0 0 -.3"/><axis xyz="0 0 1"/>
+<limit lower="-3.1" upper="3.1" effort="20" velocity="3"/></joint>
+<joint name="left" type="prismatic"><parent link="d"/><child link="l"/><axis xyz="0 1 0"/>
+<limit lower="0" upper=".05" effort="40" velocity=".2"/></joint>
+<joint name="right" type="prismatic"><parent link="d"/><child link="r"/><axis xyz="0 -1 0"/>
+<limit lower="0" upper=".05" effort="40" velocity=".2"/><mimic joint="left"/></joint>"""
+    + "".join(
+        f'<link name="{name}"><inertial><mass value="{mass}"/>'
+        '<inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/>'
+        f'</inertial><collision><origin xyz="0 0 {down}"/><geometry><box size="{size}"/></geometry></collision></link>'
+        for name, mass, down, size in (
+            ("a", 5, 0.05, ".05 .9 .05"),
+            ("b", 3, 0.05, ".1 .1 .1"),
+            ("c", 2, -0.1, ".05 .05 .3"),
+            ("d", 0.5, 0, ".04 .04 .02"),
+            ("l", 0.1, -0.05, ".02 .01 .06"),
+            ("r", 0.1, -0.05, ".02 .01 .06"),
+        )
+    )
+    + "</robot>"
+)
+
+
+def test_nothing_stands_below_the_beam_of_a_gantry(tmp_path: Path) -> None:
+    arm = arm_of(robot(tmp_path, GANTRY))
+    assert arm.hangs
+    assert arm.forward(arm.home)[0][2] < -0.2
