@@ -60,8 +60,7 @@ def sampled_agent(folder: str) -> None:
         before, rounds = 0.0, 0
         while not ended.wait(PERIOD):
             now = clock_gettime(clock)
-            # The only way to the stack of another thread.
-            frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]
+            frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]  # the only way to another thread's stack
             counts[cause(frames.get(main))] += now - before
             before, rounds = now, rounds + 1
             if rounds % 100 == 0:

@@ -65,8 +65,7 @@ def causes(number: int) -> None:
         (folder / "robbdd.toml").touch()
         path = folder / "p.study"
         path.write_text(TRACED.format(number), encoding="utf-8")
-        # Agents are started by it; no public name replaces it.
-        whole = interpreter._command  # pyright: ignore[reportPrivateUsage]
+        whole = interpreter._command  # pyright: ignore[reportPrivateUsage]  # it starts agents; no public name does
 
         def command(*arguments: str) -> Sequence[str]:
             own = arguments[:2] == ("-m", AGENT)

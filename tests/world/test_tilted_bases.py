@@ -10,13 +10,19 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.api import Region
 from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation, SceneInstance
+from robbdd_tools.catalog.objects.table import TABLE
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.composition import build_world
+from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import centred
 from robbdd_tools.world.fixed_faults import fixed_faults
+from robbdd_tools.world.hanging_arms import is_hung
 from robbdd_tools.world.pose import Pose
+from robbdd_tools.world.table_rise import rise_of
 from robbdd_tools.world.tilted_base import UPRIGHT, Tilt, far_from_tables, rotation_of, tilt_of, upright_part
 from world import strangers
 from world.arms import MJCF
@@ -215,3 +221,44 @@ def test_nothing_stands_below_the_beam_of_a_gantry(tmp_path: Path) -> None:
     arm = arm_of(robot(tmp_path, GANTRY))
     assert arm.hangs
     assert arm.forward(arm.home)[0][2] < -0.2
+
+
+def test_a_hanging_arm_that_does_not_reach_down_to_the_tables_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="cannot point its tool straight down"):
+        carried(above_counter(tmp_path, strangers.SIX, HANGING, 3.5))
+
+
+def test_an_arm_of_the_catalog_that_hangs_too_high_is_refused() -> None:
+    placed = replace(catalog("franka-panda"), bodies=((FOOT, "foot"),))
+    cell = instance(link(FRAME, (0.1, 0.1, 3.5), turn=HANGING), elements=(Realisation(ARM, (placed,)),))
+    with pytest.raises(SceneError, match="cannot point its tool straight down"):
+        build_world(replace(SCENE, agents=(ARM,)), 1, instance=cell)
+
+
+@pytest.mark.parametrize(("second", "expected"), [(-0.2, True), (0.2, False), (0.0, False)])
+def test_the_second_joint_of_a_hung_arm_is_below_its_base(second: float, expected: bool) -> None:
+    """The first joint of some arms is in their base, whichever way they point."""
+    text = f"""<mujoco><worldbody><body><joint axis="0 0 1"/><geom size=".05"/><body pos="0 0 {second}">
+    <joint axis="0 1 0"/><geom size=".05"/></body></body></worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    assert is_hung(data, (0, 1)) is expected
+    assert is_hung(data, (0,)) is False
+
+
+def test_the_largest_table_says_how_high_a_cell_is() -> None:
+    large, small = Region((0.0, 0.0, 0.5), (0.5, 0.5, 0.1)), Region((0.0, 0.0, 0.3), (0.1, 0.2, 0.1))
+    objects = {
+        "large": replace(TABLE, region=large),
+        "small": replace(TABLE, region=small),
+        "loose": replace(TABLE, region=replace(large, half=(9.0, 9.0, 0.1)), free=True),
+        "post": replace(TABLE, region=None),
+    }
+    poses = {name: Pose((0.0, 0.0, 0.3)) for name in objects}
+    # The top of the large one is 0.3 m + 0.4 m high, and usual ones are 0.1 m high.
+    assert rise_of(objects, poses.get) == pytest.approx(0.6)
+    assert rise_of({**objects, "large": centred(objects["large"])}, poses.get) == pytest.approx(0.6)
+    assert rise_of(objects, {"small": poses["small"]}.get) == pytest.approx(0.4)
+    assert rise_of(objects, {"large": Pose((0.0, 0.0, -0.5))}.get) == 0.0
+    assert rise_of(objects, lambda _: None) == 0.0

@@ -20,15 +20,15 @@ SEEN, NEAR, FAR, ASIDE, MISSED = range(5)
 
 
 def failures(
-    provider: Provider, places: FloatArray, sensor: tuple[FloatArray, FloatArray], chances: FloatArray
+    provider: Provider, places: FloatArray, sensor: tuple[FloatArray, FloatArray] | None, chances: FloatArray
 ) -> Codes:
     """Return ``SEEN`` for each observation that is made, or else the code of its failure, shape (n,).
 
     ``places`` (n, 3) m are the positions of the element, ``sensor`` the positions (n, 3) m and orientations (n, 4) of
-    the sensor's carrier, and ``chances`` (n,) random numbers from 0 to 1.
+    the sensor's carrier, ``None`` without one, and ``chances`` (n,) random numbers from 0 to 1.
     """
     codes = np.where(chances < provider.misses, MISSED, SEEN)
-    if provider.view is None:
+    if provider.view is None or sensor is None:
         return codes
     local = into_frame(places, *sensor)
     distance = np.linalg.norm(local, axis=1)

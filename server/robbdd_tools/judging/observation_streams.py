@@ -67,7 +67,7 @@ def _failures(
     chances = random.random(len(times))
     places = _truth(evidence, target, times)
     if provider.view is None:
-        return failures(provider, places, (places, places), chances)
+        return failures(provider, places, None, chances)
     carrier = provider.view.sensor
     sensor = evidence.position_at(carrier, times), evidence.orientation_at(carrier, times)
     return failures(provider, places, sensor, chances)

@@ -12,6 +12,7 @@ import numpy as np
 from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.hanging_arms import is_hung, slides_sideways
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
@@ -106,9 +107,8 @@ class Arm:
         The first joint of a gantry slides sideways, and its tool is below its base.
         """
         place, _ = self.forward(self.home)
-        first, second = self._numbers[0], self._numbers[:2][-1]
-        is_sideways = not self.turning[0] and abs(float(self._data.xaxis[first, 2])) < VERTICAL
-        return float(self._data.xanchor[second, 2]) < -LEVEL or (is_sideways and float(place[2]) < 0.0)
+        is_gantry = slides_sideways(self._model, self._data, self._numbers[0])
+        return is_hung(self._data, self._numbers) or (is_gantry and float(place[2]) < 0.0)
 
     @cached_property
     def stroke(self) -> tuple[float, float]:

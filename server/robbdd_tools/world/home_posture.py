@@ -9,10 +9,12 @@ import numpy as np
 from robbdd_tools.world.coupled_joints import coupled_by_name
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.hanging_arms import is_hung, slides_sideways
 from robbdd_tools.world.self_collision import NEAR
+from robbdd_tools.world.tilted_base import HIGH
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
@@ -27,7 +29,7 @@ CLOSE = 1e-3
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15, 0.08, 0.03)
 """Places of the tool: shares of the reach ahead of the base, and heights (m) above it, low ones for desktop arms."""
 BELOW = (-0.30, -0.45, -0.60, -0.80, -0.15)
-"""Heights (m) of the tool of an arm that hangs in its own file."""
+"""Heights (m) of the tool of an arm that hangs in its own file, or of a gantry whose base is its beam."""
 TRAVEL, GRASP = (0.35, 0.45, 0.25, 0.60, 0.80), (0.30, 0.15)
 """Heights (m) above the world's origin for a tilted arm: it works at the heights of tables, wherever it is fixed.
 
@@ -50,14 +52,16 @@ def find_home(
     palm: str,
     named: Iterable[Mapping[str, float]] = (),
     height: float | None = None,
+    is_upright: bool = True,
 ) -> tuple[float, ...]:
     """Return joint positions (rad, m) with the tool down: a key frame of the file, else the best posture of a search.
 
     ``fingers`` are the positions of the open gripper's joints, ``palm`` is its first body. Postures that are ``named``
-    elsewhere are tried after key frames. ``height`` (m) is the height of a tilted base above the world's origin. Raises
-    ``SceneError`` if the arm has no such posture.
+    elsewhere are tried after key frames. ``height`` (m) is that of a base that is tilted or far from the tables, above
+    the origin of a usual cell, and ``is_upright`` says that it is not tilted. Raises ``SceneError`` if there is no such
+    posture.
     """
-    search = _Search(model, joints, tool, fingers, palm, height)
+    search = _Search(model, joints, tool, fingers, palm, height, is_upright)
     for posture in (*search.key_frames(), *search.complete(joints, named)):
         if search.points_down(posture):
             return tuple(posture.tolist())
@@ -79,14 +83,16 @@ def _different(postures: Iterable[FloatArray]) -> list[FloatArray]:
 
 class _Search:
     def __init__(
-        self, model: Any, joints: tuple[str, ...], tool: str, fingers: dict[str, float], palm: str, height: float | None
+        self,
+        model: Any,
+        joints: tuple[str, ...],
+        tool: str,
+        fingers: dict[str, float],
+        palm: str,
+        height: float | None,
+        is_upright: bool,
     ) -> None:
         self._model = model
-        self._heights, self._levels = (*HEIGHTS, *BELOW), LEVELS
-        if height is not None:
-            # A base far above the tables may stand on a pedestal, from which its arm does not reach them.
-            self._heights = (*(one - height for one in TRAVEL), *HEIGHTS)
-            self._levels = tuple(one - height for one in GRASP)
         self._data: Any = mujoco.MjData(model)
         for name, value in fingers.items():
             self._data.qpos[model.joint(name).qposadr[0]] = value
@@ -99,7 +105,19 @@ class _Search:
         self._low = np.where(limited, model.jnt_range[numbers, 0], -wide)
         self._high = np.where(limited, model.jnt_range[numbers, 1], wide)
         self._near = self._always_near(model.body(palm).id)
+        self._heights, self._levels = self._usual_heights(numbers), LEVELS
+        if height is not None:
+            tables = tuple(one - height for one in TRAVEL)
+            # An upright base far above the tables may stand on a pedestal, from which its arm does not reach them.
+            self._heights = (*tables, *self._heights) if height >= HIGH and is_upright else tables
+            self._levels = tuple(one - height for one in GRASP)
         self._reach = 0.0
+
+    def _usual_heights(self, joints: Sequence[int]) -> tuple[float, ...]:
+        mujoco.mj_kinematics(self._model, self._data)
+        if is_hung(self._data, joints):
+            return BELOW
+        return (*HEIGHTS, *BELOW) if slides_sideways(self._model, self._data, joints[0]) else HEIGHTS
 
     def key_frames(self) -> Iterator[FloatArray]:
         """Yield the postures of the file's key frames, those called home first."""

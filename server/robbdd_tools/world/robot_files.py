@@ -140,6 +140,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
         chain[-1].name,
         [one.positions for one in semantics.homes],
         height=FLOOR if is_mobile else None if tilt is None else tilt.height,
+        is_upright=turn == UPRIGHT,
     )
     for what, numbers in (("home", home), ("velocity", velocity)):
         if len(numbers) != len(joints):

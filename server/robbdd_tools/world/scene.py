@@ -123,7 +123,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
             left_out.append(name)
         else:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
-    rise = 0.0 if staging is None else rise_of(_carriers_among(scene, objects), staging.pose)
+    rise = 0.0 if staging is None else rise_of(objects, staging.pose)
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
         model = _agent_model(scene, staging, name, rise)
@@ -178,11 +178,6 @@ def _stated(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> Iterator[Co
         model = None if (one.target, one.name) in own else objects.get(one.target)
         if model is not None and model is catalog.get(model.name) and object_has(model, one.name):
             yield one
-
-
-def _carriers_among(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, ObjectModel]:
-    carry = {name for own in scene.workspaces.values() for name in own}
-    return {name: model for name, model in objects.items() if model.region is not None or name in carry}
 
 
 def _agent_model(scene: SceneSpec, staging: Staging | None, name: str, rise: float) -> RobotModel | ObjectModel | None:

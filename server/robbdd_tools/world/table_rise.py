@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.object_settings import can_move
-from robbdd_tools.world.extent import carrying
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel
@@ -21,19 +20,11 @@ def rise_of(objects: Mapping[str, ObjectModel], pose_of: Callable[[str], Pose | 
 
     In models of users, the world's origin is often on the floor.
     """
-    tops = [_top(model, pose) for name, model in objects.items() if _is_table(model) and (pose := pose_of(name))]
+    fixed = {name: model for name, model in objects.items() if not can_move(model) and not model.bystander}
+    tops = [
+        (region.half[0] * region.half[1], pose.position[2] + region.center[2] - region.half[2] - model.frame[2])
+        for name, model in fixed.items()
+        if (region := model.region) is not None and (pose := pose_of(name)) is not None
+    ]
     _, height = max(tops, default=(0.0, TABLE_TOP))
     return max(0.0, round(height - TABLE_TOP, 6))
-
-
-def _is_table(model: ObjectModel) -> bool:
-    return not can_move(model) and not model.bystander
-
-
-def _top(model: ObjectModel, pose: Pose) -> tuple[float, float]:
-    """Return the area (m²) of an object's surface for other objects, and its height (m, world frame)."""
-    region = carrying(model).region
-    if region is None:
-        return 0.0, TABLE_TOP
-    (x, y, high), (_, _, bottom) = region.half, region.center
-    return 4 * x * y, pose.position[2] + bottom - high - model.frame[2]

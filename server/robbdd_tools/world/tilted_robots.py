@@ -37,5 +37,5 @@ def _with_home(robot: RobotModel, tilt: Tilt, source: ModelSource) -> RobotModel
     palm = str(spec.site(robot.tool_site).parent.name)
     model = spec.compile()
     tilt_model(model, tilt.rotation)
-    home = find_home(model, source, robot.joints, robot.tool_site, fingers, palm, height=tilt.height)
+    home = find_home(model, source, robot.joints, robot.tool_site, fingers, palm, height=tilt.height, is_upright=False)
     return replace(robot, home=home, tilt=tilt.rotation)
