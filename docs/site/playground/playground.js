@@ -133,8 +133,11 @@ async function derive(own) {
     if (own !== revision) {
       return;
     }
-    found = { ...found, shapes };
-    show();
+    if (shapes.length > 0) {
+      // Only then: setting diagnostics closes the description that is open over one of them.
+      found = { ...found, shapes };
+      show();
+    }
     if ([...found.fast, ...shapes].some(({ severity }) => severity === "error")) {
       element("state").textContent = "Gherkin and graph are those before the errors";
       return;

@@ -114,9 +114,11 @@ test("a mistake is underlined and listed, and its quick fix corrects it", async 
   await problem.waitFor();
   context.diagnostic(`findings ${Date.now() - start} ms after a key`);
   await page.locator(".cm-lintRange-error").first().waitFor();
-  await page.screenshot({ path: join(SCREENSHOTS, "playground-problem.png") });
   await page.keyboard.press("Escape");
   await page.locator(".cm-lintRange-error").first().hover();
+  await page.locator(".cm-diagnosticAction").waitFor();
+  await state("Gherkin and graph are those before the errors");
+  await page.screenshot({ path: join(SCREENSHOTS, "playground-problem.png") });
   await page.getByRole("button", { name: "Change to 'evt-place-end'" }).click();
   await problem.waitFor({ state: "detached" });
   await state("ready");
