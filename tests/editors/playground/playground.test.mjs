@@ -116,7 +116,7 @@ test("a mistake is underlined and listed, and its quick fix corrects it", async 
   await page.locator(".cm-lintRange-error").first().waitFor();
   await page.keyboard.press("Escape");
   await page.locator(".cm-lintRange-error").first().hover();
-  await page.locator(".cm-diagnosticAction").waitFor();
+  await page.locator(".cm-diagnosticAction").first().waitFor();
   await state("Gherkin and graph are those before the errors");
   await page.screenshot({ path: join(SCREENSHOTS, "playground-problem.png") });
   await page.getByRole("button", { name: "Change to 'evt-place-end'" }).click();
