@@ -110,18 +110,33 @@ test("a mistake is underlined and listed, and its quick fix corrects it", async 
   await page.keyboard.press("ArrowLeft");
   const start = Date.now();
   await page.keyboard.type("s");
-  const problem = page.locator("#problems .error", { hasText: "33: there is no event 'evt-place-ends'; did you mean 'evt-place-end'? [unknown-name]" });
-  await problem.waitFor();
+  await mistake().waitFor();
   context.diagnostic(`findings ${Date.now() - start} ms after a key`);
   await page.locator(".cm-lintRange-error").first().waitFor();
+  await page.screenshot({ path: join(SCREENSHOTS, "playground-problem.png") });
   await page.keyboard.press("Escape");
   await page.locator(".cm-lintRange-error").first().hover();
-  await page.locator(".cm-diagnosticAction").first().waitFor();
-  await state("Gherkin and graph are those before the errors");
-  await page.screenshot({ path: join(SCREENSHOTS, "playground-problem.png") });
   await page.getByRole("button", { name: "Change to 'evt-place-end'" }).click();
-  await problem.waitFor({ state: "detached" });
+  await mistake().waitFor({ state: "detached" });
   await state("ready");
+});
+
+test("a description remains open while the model is validated", async () => {
+  await state("ready");
+  await page.clock.install();
+  await page.clock.pauseAt(Date.now() + 60_000);
+  await page.keyboard.type("s");
+  await mistake().waitFor();
+  await page.locator(".cm-lintRange-error").first().hover();
+  await page.clock.runFor(350);
+  const fix = page.getByRole("button", { name: "Change to 'evt-place-end'" });
+  await fix.waitFor();
+  await page.clock.runFor(1000);
+  await state("Gherkin and graph are those before the errors");
+  await page.clock.resume();
+  assert.ok(await fix.isVisible());
+  await fix.click();
+  await mistake().waitFor({ state: "detached" });
 });
 
 test("after a bracket, names of the right kind are offered", async () => {
@@ -161,6 +176,10 @@ test("axe finds no barrier, and nothing was asked of another host", async () => 
 
 function state(text) {
   return page.locator("#state", { hasText: text }).waitFor({ timeout: LONG });
+}
+
+function mistake() {
+  return page.locator("#problems .error", { hasText: "33: there is no event 'evt-place-ends'; did you mean 'evt-place-end'? [unknown-name]" });
 }
 
 function show(view) {
