@@ -141,6 +141,12 @@ def test_an_object_lies_exactly_where_it_is_placed() -> None:
         assert run.trace.positions[0, run.trace.column(CUBE), :2] == pytest.approx([0.5, -0.15], abs=1e-3)
 
 
+def test_an_exact_place_that_only_leaves_no_room_for_a_hand_is_taken_and_not_counted_as_drawn_again() -> None:
+    run = started(configured((CUBE, "position_ahead", "0.5"), (CUBE, "position_left", "0.42")))
+    assert run.simulation.world.resampled == 0
+    assert run.trace.positions[0, run.trace.column(CUBE), :2] == pytest.approx([0.5, 0.42], abs=1e-3)
+
+
 def test_things_lie_within_the_range_that_is_asked_for() -> None:
     scene = configured((PANDA, "position_range", "0.35 0.45 0.1 0.3"), (BALL, "position_range", "dense"))
     for seed in range(5):
@@ -231,6 +237,14 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
         ([("env:bolt", "mass", "1")], "'env:bolt', which should have mass = 1, is not in the scene"),
         ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' should have mass = 1 and 2"),
         ([(CUBE, "position_ahead", "1.5")], "no part of 'env:bench', where 'env:cube1' should be"),
+        (
+            [(CUBE, "position_ahead", "0.5"), (CUBE, "position_left", "0.6")],
+            "there is no room left for 'env:cube1' at its exact place: 'env:bin1' is there",
+        ),
+        (
+            [(name, key, "0.4") for name in (CUBE, BALL) for key in ("position_ahead", "position_left")],
+            "at its exact place: 'env:ball1' is there",
+        ),
         ([(CUBE, "grip_force", "5")], "'env:cube1' has no grip_force: it applies to an agent"),
         ([(BIN, "size_scale", "1.1")], "'env:bin1' has no size_scale: it applies to an object of the catalog to grasp"),
         ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' should be"),

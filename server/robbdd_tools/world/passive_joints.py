@@ -78,14 +78,16 @@ def initial_pose(model: ObjectModel, carrier: ObjectModel, carried_at: Pose) -> 
     return Pose(carried_at.at(here.position).position, yaw, (w, x, y, z))
 
 
-def ways_of_parts(objects: Mapping[str, ObjectModel], poses: Mapping[str, Pose]) -> Iterator[tuple[Pose, ObjectModel]]:
-    """Yield the moving parts of the catalog's models, each with its closed and its open pose in the world."""
-    for model in objects.values():
+def ways_of_parts(
+    objects: Mapping[str, ObjectModel], poses: Mapping[str, Pose]
+) -> Iterator[tuple[str, Pose, ObjectModel]]:
+    """Yield each moving part of the catalog's models: its name, and its closed and its open pose in the world."""
+    for name, model in objects.items():
         joint = model.joint
         if joint is not None and joint.bounds is not None and joint.parent and objects[joint.parent].moving:
             for end in joint.bounds:
                 there = replace(model, joint=replace(joint, start=end))
-                yield initial_pose(there, objects[joint.parent], poses[joint.parent]), model
+                yield name, initial_pose(there, objects[joint.parent], poses[joint.parent]), model
 
 
 def opening_records(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from math import atan2, cos, hypot, pi, sin
+from math import hypot, pi
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
+from robbdd_tools.catalog.api import ObjectModel, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.catalog.settings import NORMAL
@@ -16,13 +16,14 @@ from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.fixed_obstacles import Obstacle, fixed_obstacles
+from robbdd_tools.world.fixed_obstacles import fixed_obstacles
+from robbdd_tools.world.free_places import TOUCHING, TRIES, Field, Size, Taken, Wall, draw_place, place_above
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.region_frames import pose_along_edges
 from robbdd_tools.world.scene import carriers
 from robbdd_tools.world.table_rise import TABLE_TOP as TABLE_TOP
-from robbdd_tools.world.working_area import area_within, is_on, place_before
+from robbdd_tools.world.working_area import area_within, place_before
 from robbdd_tools.world.working_area import field_before as field_before
 
 if TYPE_CHECKING:
@@ -33,19 +34,14 @@ if TYPE_CHECKING:
 
 FLOOR = TABLE_TOP - HEIGHT
 """Height of the floor, m, world frame."""
-BEARING = 2.6
-"""Objects are placed where an arm turns by at most this angle (rad) to either side of straight ahead."""
 FINGER_GAP = 0.04
 """Room (m) for a finger around an object on a table."""
 HAND_GAP = 0.08
 """Room (m) for a hand next to a bin's wall."""
-TOUCHING = 0.002
-"""Room (m) around objects if there is no space for more."""
 BIN_SKEW = 0.2
 """Largest rotation (rad) of objects in a bin relative to the bin's edges: a hand fits only along its length."""
 BIN_ROOM = 0.03
 """A hand can work in a square in a bin's middle; this is half its edge (m)."""
-TRIES = 400
 SQUARE = 1e-3
 """Edges count as parallel to the world's axes up to this share of a quarter turn."""
 
@@ -56,37 +52,6 @@ class Arrangement:
 
     poses: dict[str, Pose]
     resampled: int
-
-
-@dataclass(frozen=True, slots=True)
-class _Field:
-    """A rectangle to draw positions from: centre and half edges (m, world frame), and height (m) of objects there.
-
-    ``skew`` bounds the rotation (rad). ``gap`` and ``wall_gap`` are distances (m) to other objects and to bins; in a
-    bin there is no ``wall_gap``. ``base`` is the base of the robot that works there. ``obstacles`` are fixed shapes to
-    keep clear of. ``on`` is the carrier's pose with the region above which objects stay, if the rectangle is larger.
-    """
-
-    center: tuple[float, float]
-    half: tuple[float, float]
-    height: float
-    skew: float
-    gap: float
-    wall_gap: float | None
-    base: Pose
-    obstacles: tuple[Obstacle, ...] = ()
-    on: tuple[Pose, Region] | None = None
-
-    def has(self, x: float, y: float) -> bool:
-        """Return whether a point (m) is above the carrier and before the robot."""
-        return (self.on is None or is_on(*self.on, x, y)) and abs(bearing(self.base, x, y)) <= BEARING
-
-
-@dataclass(frozen=True, slots=True)
-class _Disc:
-    x: float
-    y: float
-    radius: float
 
 
 def footprint(model: ObjectModel) -> float:
@@ -165,30 +130,31 @@ def arrange(
             poses[name] = initial_pose(model, cast.objects[model.joint.parent], poses[model.joint.parent])
         elif model.joint is not None and name not in poses:
             raise SceneError(f"'{name}' hangs on a joint: give it a pose in the .scenex", origin=cast.origin(name))
-    ways = list(ways_of_parts(cast.objects, poses))
+    ways = [Wall(*way) for way in ways_of_parts(cast.objects, poses)]
 
     def works_at(place: Pose, model: ObjectModel) -> Pose:
         return place_before(base, place, model) if is_mobile and model.region is not None else base
 
-    taken: list[_Disc] = []
+    taken: list[Taken] = []
     dropped: list[Ball] = []
     resampled = 0
     for name in sorted(cast.objects, key=lambda one: not _is_exact(cast, one)):
         model = cast.objects[name]
         if not model.graspable:
             continue
-        walls = [(poses[other], cast.objects[other]) for other in bins] + ways
+        walls = [Wall(other, poses[other], cast.objects[other]) for other in bins] + ways
         if name in placed:
             pose, rejected = _apart_from(cast, name, placed[name], taken)
         elif name in cast.drops:
             place = partial(
-                _place_above, next(_fields(scene, cast, poses, works_at, name)), walls, footprint(model), rng
+                place_above, next(_fields(scene, cast, poses, works_at, name)), walls, footprint(model), rng
             )
             pose, ball, rejected = drop(name, model, cast.drops[name], place, dropped, rng)
             dropped.append(ball)
         else:
-            pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, works_at, name)), taken, walls, rng)
-        taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
+            size = Size(footprint(model), model.rest_height)
+            pose, rejected = draw_place(name, size, _fields(scene, cast, poses, works_at, name), taken, walls, rng)
+        taken.append(Taken(name, pose.position[0], pose.position[1], footprint(model)))
         poses[name] = pose
         resampled += rejected
     return Arrangement(poses, resampled)
@@ -200,24 +166,17 @@ def _is_exact(cast: Cast, name: str) -> bool:
     return area[0] == area[1] and area[2] == area[3]
 
 
-def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:
+def _apart_from(cast: Cast, name: str, first: Pose, taken: list[Taken]) -> tuple[Pose, int]:
     """Return an object's pose from the scene, resampled until nothing overlaps it, and the number of resamples."""
     radius, pose = footprint(cast.objects[name]), first
     for attempt in range(1, TRIES):
-        x, y, _ = pose.position
-        if all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + TOUCHING for disc in taken):
+        if not any(one.is_near(*pose.position[:2], radius + TOUCHING) for one in taken):
             return pose, attempt - 1
         again = cast.pose(name, attempt)
         if again is None or again == pose:
             return pose, attempt - 1
         pose = again
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
-
-
-def bearing(base: Pose, x: float, y: float) -> float:
-    """Return the direction (rad, in (-π, π]) of a point seen from a robot's base, 0 straight ahead."""
-    angle = atan2(y - base.position[1], x - base.position[0]) - base.yaw
-    return atan2(sin(angle), cos(angle))
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
@@ -247,7 +206,7 @@ def _fields(
     poses: Mapping[str, Pose],
     works_at: Callable[[Pose, ObjectModel], Pose],
     name: str,
-) -> Iterator[_Field]:
+) -> Iterator[Field]:
     """Yield the areas for an object, best first; raises ``SceneError`` if there are none.
 
     ``works_at`` returns where the robot's base is when it works at an object.
@@ -268,10 +227,10 @@ def _fields(
     if can_move(model) or region.walled:
         inner = (half[0] - radius, half[1] - radius)
         if region.walled:
-            yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base)
+            yield Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base)
         else:
-            yield _Field((x, y), inner, bottom, pi, FINGER_GAP, None, base)
-        yield _Field((x, y), inner, bottom, pi, TOUCHING, None, base)
+            yield Field((x, y), inner, bottom, pi, FINGER_GAP, None, base)
+        yield Field((x, y), inner, bottom, pi, TOUCHING, None, base)
         return
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
     if area is None and name not in cast.ranges:
@@ -280,11 +239,11 @@ def _fields(
         raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
     obstacles = fixed_obstacles(cast.objects, poses, carrier)
     on = (pose, region)
-    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles, on)
-    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles, on)
+    yield Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles, on)
+    yield Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles, on)
     if obstacles:
         # Their boxes may be larger than they are. Whether anything overlaps is checked later.
-        yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, (), on)
+        yield Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, (), on)
 
 
 def _flat(half: Vector, yaw: float) -> Vector:
@@ -294,51 +253,6 @@ def _flat(half: Vector, yaw: float) -> Vector:
         least = min(half[:2]) / 2**0.5
         return (least, least, half[2])
     return (half[1], half[0], half[2]) if round(quarters) % 2 else half
-
-
-def _draw(
-    name: str,
-    model: ObjectModel,
-    fields: list[_Field],
-    taken: list[_Disc],
-    walls: list[tuple[Pose, ObjectModel]],
-    rng: np.random.Generator,
-) -> tuple[Pose, int]:
-    """Return a pose and the number of rejected samples; raises ``SceneError``."""
-    radius = footprint(model)
-    rejected = 0
-    for field in fields:
-        wall_gap, top = field.wall_gap, field.height + 2.0 * model.rest_height
-        for _ in range(TRIES):
-            dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
-            x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
-            clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
-            apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
-            blocked = any(one.is_near(x, y, radius + TOUCHING, field.height, top) for one in field.obstacles)
-            if clear and apart and not blocked and field.has(x, y):
-                return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
-            rejected += 1
-    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
-
-
-def _place_above(
-    field: _Field, walls: list[tuple[Pose, ObjectModel]], radius: float, rng: np.random.Generator
-) -> tuple[float, float] | None:
-    """Draw a position above a field, or return ``None`` if it is above a bin or behind the robot."""
-    dx, dy = rng.uniform(-1.0, 1.0, 2)
-    x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
-    free = all(_apart(x, y, radius + TOUCHING, pose, other) for pose, other in walls)
-    return (x, y) if free and field.has(x, y) else None
-
-
-def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
-    """Return whether a point is at least ``distance`` (m) from a bin's walls."""
-    if model.region is None:
-        return True
-    x, y, c, s = x - pose.position[0], y - pose.position[1], cos(pose.yaw), sin(pose.yaw)
-    dx = max(abs(c * x + s * y) - model.region.half[0], 0.0)
-    dy = max(abs(c * y - s * x) - model.region.half[1], 0.0)
-    return hypot(dx, dy) >= distance
 
 
 def _reach(model: ObjectModel, index: int) -> float:

@@ -11,7 +11,8 @@ import numpy as np
 
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.errors import BehaviourError
-from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
+from robbdd_tools.world.free_places import BEARING, bearing
+from robbdd_tools.world.placement import HAND_GAP, Pose, field_before, footprint
 from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.working_area import area_of, is_on
 
