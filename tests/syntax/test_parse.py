@@ -119,6 +119,36 @@ def test_a_fault_names_its_place_and_what_was_expected(text: str, place: str, wo
     assert words in message
 
 
+@pytest.mark.parametrize(
+    ("kind", "part", "message"),
+    [
+        ("scenex", "kgraph (ns=t) poses { }", "'kgraph' belongs inside 'scene inst … { … }': move it there"),
+        ("scenex", "agn <arms.one> { }", "'agn' belongs inside 'scene inst … { … }': move it there"),
+        ("scenex", "scene: <cell>", "'scene' belongs inside 'scene inst … { … }': move it there"),
+        ("scenex", "body room { }", "'body' belongs inside 'ktree … { … }' or 'kgraph … { … }': move it there"),
+        ("scenex", "variant: <x>", "'variant' belongs inside 'Scenario Exec … { … }' of a .bddx file: move it there"),
+        ("scene", "object cube", "'object' belongs inside 'obj set … { … }': move it there"),
+        ("bdd", "Given: x", "'Given' belongs inside 'Scenario Template … { … }' or 'Scenario … { … }': move it there"),
+        ("bdd", "Behaviour (ns=t) b { }", "'Behaviour' belongs inside 'Scenario Template … { … }': move it there"),
+        ("bdd", "Scenario s { }", "'Scenario' belongs inside 'User Story … { … }': move it there"),
+        ("bdd", "kgraph (ns=t) g { }", "'kgraph' belongs inside 'scene inst … { … }' of a .scenex file: move it there"),
+        ("bdd", "nonsense", "unexpected 'nonsense' after the end of the declaration"),
+    ],
+)
+def test_a_part_outside_of_its_declaration_is_told_where_it_belongs(kind: str, part: str, message: str) -> None:
+    before = "ns t = 'https://example.org/t/'\n"
+    (fault,) = parse_declaration(kind, before + part).faults
+    assert (fault.span.start, fault.message) == (len(before), message)
+
+
+def test_a_part_behind_the_end_of_its_declaration_asks_for_the_braces() -> None:
+    text = (
+        "Scenario Template (ns=t) a { var b When: event <e> occurs <b> picks <b> Then: <b> is at rest after <e> } var c"
+    )
+    (fault,) = parse_declaration("bdd", text).faults
+    assert fault.message == "'var' belongs inside the 'Scenario Template', which ends before it: check the braces"
+
+
 def test_a_broken_declaration_keeps_its_names() -> None:
     text = "Scenario Template (ns=t) fetch { var a set var b Given: f: holds(<a> is nowhere"
     paths = [symbol.path for symbol in parse_declaration("bdd", text).symbols]

@@ -1,14 +1,16 @@
 """Search a box for a failure with few executions, and move the failure as near to nominal as possible.
 
-Points are in the unit box of the ranges. The search uses CMA-ES (Hansen 2016, *The CMA Evolution Strategy*) or, for
-comparison, uniform or quasi-random points.
+Points are in the unit box of the ranges. The search begins with combinations of the ends of the ranges (boundary value
+analysis, ISO/IEC/IEEE 29119-4), where physical limits are usually met first. Then generations of CMA-ES (Hansen 2016,
+*The CMA Evolution Strategy*), which follow the margins, alternate with quasi-random points, which do not need any. Each
+method is also available alone, as are uniform points, for comparison.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import chain, combinations, islice, zip_longest
 from math import dist
 from typing import TYPE_CHECKING
 
@@ -18,12 +20,12 @@ from robbdd_tools.campaign.rates import StatisticsNotInstalled
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
-CMA_ES, SOBOL, UNIFORM = "cma-es", "sobol", "uniform"
-METHODS = (CMA_ES, SOBOL, UNIFORM)
+BOUNDARY, CMA_ES, SOBOL, UNIFORM = "boundary", "cma-es", "sobol", "uniform"
+METHODS = (BOUNDARY, CMA_ES, SOBOL, UNIFORM)
 SPREAD = 0.3
 """Initial standard deviation of CMA-ES, as a share of each range. The box is about three deviations wide."""
 GENERATION = 8
-"""Points of a generation of the other methods."""
+"""Points of a generation of all methods but CMA-ES."""
 MOST_SUBSETS = 70
 """Sets of changed variables of one size are tried only if there are at most this many."""
 ROUNDS, PARTS = 3, 8
@@ -68,7 +70,7 @@ class Failure:
 Evaluate = Callable[[Sequence[Point]], Sequence[Evaluation]]
 
 
-def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = CMA_ES) -> Failure:
+def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = BOUNDARY) -> Failure:
     """Search for a failure with at most ``budget`` points, then shrink the failure with further points.
 
     The same seed gives the same points. Raises ``SearchNotInstalled`` and ``StatisticsNotInstalled``.
@@ -77,7 +79,7 @@ def find_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int =
     return found if found.first is None else shrink(evaluate, nominal, found)
 
 
-def first_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = CMA_ES) -> Failure:
+def first_failure(evaluate: Evaluate, nominal: Point, *, budget: int, seed: int = 1, method: str = BOUNDARY) -> Failure:
     """Search for a failure with at most ``budget`` points, and leave it as it is found."""
     searched = 0
     for generation in _generations(evaluate, nominal, budget, seed, method):
@@ -133,26 +135,61 @@ def _generations(
     evaluate: Evaluate, nominal: Point, budget: int, seed: int, method: str
 ) -> Iterator[Sequence[Evaluation]]:
     """Yield evaluated points, until the budget is used."""
+    if method == BOUNDARY:
+        corners = list(islice(_corners(nominal, seed), budget // 2))
+        rest = budget - len(corners)
+        both = _evolved(evaluate, nominal, rest // 2, seed), _listed(evaluate, _sobol(nominal, rest - rest // 2, seed))
+        yield from _listed(evaluate, corners)
+        yield from (one for one in chain.from_iterable(zip_longest(*both)) if one is not None)
+    elif method == CMA_ES:
+        yield from _evolved(evaluate, nominal, budget, seed)
+    elif method == SOBOL:
+        yield from _listed(evaluate, _sobol(nominal, budget, seed))
+    else:
+        yield from _listed(evaluate, _uniform(nominal, budget, seed))
+
+
+def _listed(evaluate: Evaluate, points: Iterable[Point]) -> Iterator[Sequence[Evaluation]]:
+    """Yield evaluated points that do not depend on earlier ones."""
+    rest = iter(points)
+    while chosen := list(islice(rest, GENERATION)):
+        yield evaluate(chosen)
+
+
+def _corners(nominal: Point, seed: int) -> Iterator[Point]:
+    """Yield the corners of the box but nominal, each once, in random order."""
     import numpy as np
 
-    rest = budget
-    if method == CMA_ES:
-        yield from _evolved(evaluate, nominal, budget, seed)
-        return
-    if method == SOBOL:
-        try:
-            from scipy.stats import qmc
-        except ImportError as error:
-            raise StatisticsNotInstalled from error
-        points: FloatArray = qmc.Sobol(len(nominal), seed=np.random.default_rng(seed)).random_base2(
-            max(1, (budget - 1).bit_length())
-        )
-    else:
-        points = np.random.default_rng(seed).random((budget, len(nominal)))
-    for first in range(0, budget, GENERATION):
-        chosen = points[first : min(first + GENERATION, budget)]
-        yield evaluate([tuple(map(float, row)) for row in chosen])
-        rest -= len(chosen)
+    random = np.random.default_rng(seed)
+    known = {nominal}
+    left = 2 ** len(nominal) - all(value in (0.0, 1.0) for value in nominal)
+    while left > 0:
+        corner = tuple(map(float, random.integers(0, 2, len(nominal))))
+        if corner not in known:
+            known.add(corner)
+            left -= 1
+            yield corner
+
+
+def _sobol(nominal: Point, number: int, seed: int) -> Sequence[Point]:
+    import numpy as np
+
+    try:
+        from scipy.stats import qmc
+    except ImportError as error:
+        raise StatisticsNotInstalled from error
+    sampler = qmc.Sobol(len(nominal), seed=np.random.default_rng(seed))
+    return _points(sampler.random_base2(max(1, (number - 1).bit_length()))[:number])
+
+
+def _uniform(nominal: Point, number: int, seed: int) -> Sequence[Point]:
+    import numpy as np
+
+    return _points(np.random.default_rng(seed).random((number, len(nominal))))
+
+
+def _points(rows: FloatArray) -> Sequence[Point]:
+    return [tuple(map(float, row)) for row in rows]
 
 
 def _evolved(evaluate: Evaluate, nominal: Point, budget: int, seed: int) -> Iterator[Sequence[Evaluation]]:

@@ -12,7 +12,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.campaign.failure_search import CMA_ES, Failure, between, find_failure
+from robbdd_tools.campaign.failure_search import BOUNDARY, Failure, between, find_failure
 from robbdd_tools.campaign.point_runs import PointRuns, SearchEnded, fails
 from robbdd_tools.campaign.study_file import load_study
 from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
@@ -46,7 +46,7 @@ class FalsifyOptions:
 
     path: Path
     budget: int = 200
-    method: str = CMA_ES
+    method: str = BOUNDARY
     seed: int | None = None
     nominal: Mapping[str, float] | None = None
     jobs: int | None = None

@@ -9,7 +9,7 @@ from pathlib import Path
 from robbdd_tools.commands.arguments import positive, seed
 from robbdd_tools.commands.lost_output import output_may_be_lost
 
-METHODS = ("cma-es", "sobol", "uniform")
+METHODS = ("boundary", "cma-es", "sobol", "uniform")
 
 
 def add_falsify(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +17,7 @@ def add_falsify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("path", metavar="FILE.study", type=Path)
     text = "search at most N points (default: 200); reducing a failure takes some points beyond these"
     parser.add_argument("--budget", metavar="N", type=positive, default=200, help=text)
-    text = "how points are chosen (default: cma-es, which needs robbdd-tools[search])"
+    text = "how points are chosen (default: boundary, which needs robbdd-tools[search], as cma-es does)"
     parser.add_argument("--method", choices=METHODS, default=METHODS[0], help=text)
     text = "value from which the search begins (default: the middle of its range); repeats"
     parser.add_argument("--nominal", metavar="VARIABLE=VALUE", type=_value, action="append", help=text)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.quantity_units import units_of
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.syntax.containing_declarations import misplaced_part
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.foreign_units import foreign_unit
 from robbdd_tools.syntax.joined import joining_word
@@ -69,9 +70,9 @@ _AS_NAMES = {
 }
 
 
-def fault_in(text: str, fault: Fault) -> SyntaxFault:
+def fault_in(language: str, text: str, fault: Fault) -> SyntaxFault:
     """Return an error as a fault for users."""
-    found = _rejected(text, fault.rejected)
+    found = _rejected(language, text, fault.rejected)
     if found.fix is not None or fault.repair is None or fault.repair.text is None:
         return found
     return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text, fault.repair.title))
@@ -90,7 +91,7 @@ def _path_words(rule: str) -> str:
     return f"the name of a{'n' if words.lstrip()[:1] in 'aeiou' else ''}{words}"
 
 
-def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
+def _rejected(language: str, text: str, rejected: Rejected) -> SyntaxFault:
     span = _token(text, rejected.offset)
     found = _shown(text, span)
     misplaced = _misplaced(text, rejected)
@@ -114,10 +115,11 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     if known is not None:
         return known
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
-        return SyntaxFault(span, other_file(text, 0) or f"'{found}' does not begin a declaration")
+        message = other_file(text, 0) or misplaced_part(language, text, 0) or f"'{found}' does not begin a declaration"
+        return SyntaxFault(span, message)
     words = expected_words(rejected.expected)
     if not words:
-        return trailing_fault(text, rejected.offset)
+        return trailing_fault(language, text, rejected.offset)
     expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
     if not found:
         place = _blank_line(text) if "}" in rejected.expected.literals else None
@@ -191,7 +193,7 @@ def _unit_after(head: str) -> str:
     return "m"
 
 
-def trailing_fault(text: str, offset: int) -> SyntaxFault:
+def trailing_fault(language: str, text: str, offset: int) -> SyntaxFault:
     """Return the fault of text after the end of a declaration."""
     token = _token(text, offset)
     word = text[token.start : token.end]
@@ -202,7 +204,7 @@ def trailing_fault(text: str, offset: int) -> SyntaxFault:
         fix = SyntaxFix(token, written, f"Change to '{written}'")
         return SyntaxFault(token, f"a declaration begins with a capital letter: '{written}'", fix)
     unexpected = f"unexpected '{_shown(text, token)}' after the end of the declaration"
-    return SyntaxFault(token, other_file(text, offset) or unexpected)
+    return SyntaxFault(token, other_file(text, offset) or misplaced_part(language, text, offset) or unexpected)
 
 
 def _shown(text: str, span: Span) -> str:

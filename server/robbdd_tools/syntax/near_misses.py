@@ -130,9 +130,9 @@ _NEAR_MISSES = (
 
 
 _OTHER_FILES = (
-    (re.compile(r"(?:similar\s+)?(?:obj|ws|agn)\s+set\b|comp\b|scene\b(?!\s+inst\b)"), ".scene"),
+    (re.compile(r"(?:similar\s+)?(?:obj|ws|agn)\s+set\b|comp\b|scene\b(?!\s+inst\b|\s*:)"), ".scene"),
     (re.compile(r"Scenario\s+Exec\b|bhv\s+impl\b|obs\s+(?:provider|policy)\b|observation\b|robot\s+log\b"), ".bddx"),
-    (re.compile(r"scene\s+inst\b|distrib\b|kgraph\b"), ".scenex"),
+    (re.compile(r"scene\s+inst\b(?!\s*:)|distrib\b|ktree\b"), ".scenex"),
     (re.compile(r"Event\b|Task\b|Requirement\b|const\s+set\b|Scenario\s+Template\b|User\s+Story\b"), ".bdd"),
 )
 """First words of declarations, and the kind of file that may contain them."""

@@ -79,5 +79,5 @@ def _whole(language: str, text: str) -> Declaration:
     declared = symbols(piece.tree)
     if piece.faults:
         declared = with_lost(declared, salvage(text))
-    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(text, piece.trailing))
+    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(language, text, piece.trailing))
     return Declaration(text, piece.tree, declared, references(piece.tree), faults)

@@ -28,7 +28,7 @@ def read_piece(language: str, text: str) -> Piece:
     if isinstance(parsed, Parsed):
         return Piece(convert(parsed.declaration, text), (), parsed.trailing)
     recovered = recover(language, text, parsed)
-    faults = tuple(fault_in(text, fault) for fault in recovered.faults)
+    faults = tuple(fault_in(language, text, fault) for fault in recovered.faults)
     if recovered.parsed is None:
         return Piece(None, faults, None)
     # A repair may have appended text that is not the user's.

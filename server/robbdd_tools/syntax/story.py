@@ -124,7 +124,7 @@ def _variants(scenarios: Iterable[Placed]) -> InPlace[tree.Variant]:
 def _frame(head: str, tail: str) -> _Frame:
     text = head + STAND_IN + tail
     piece = read_piece("bdd", text)
-    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(text, piece.trailing))
+    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault("bdd", text, piece.trailing))
     story = replace(piece.tree, variants=()) if isinstance(piece.tree, tree.Story) else None
     known = () if story is None else tuple(symbol for symbol in symbols(story) if symbol.name != HOLE)
     known = known or salvage(head)[:1]
@@ -169,7 +169,7 @@ def _scenarios(key: Key) -> tuple[Placed, ...]:
     while True:
         rest = text[start:]
         piece = _read_scenario(rest)
-        faults = (trailing_fault(rest, 0),) if piece.tree is None and found else piece.faults
+        faults = (trailing_fault("bdd", rest, 0),) if piece.tree is None and found else piece.faults
         own = rest[: piece.trailing]
         found.append(Placed(_scenario(piece.tree, own, faults, path, namespace), start))
         if piece.trailing is None:

@@ -1,4 +1,4 @@
-"""``python -m tests.bench.falsification [METHOD]...``: executions up to the first failure, on three rare failures.
+"""``python -m tests.bench.falsification [METHOD]...``: executions up to the first failure, on rare failures.
 
 Each problem is searched with ``SEEDS`` seeds, at most ``BUDGET`` points each, one execution at a point. ``uniform``
 executes all its points, because they also give the failure rate. Results are added to ``recorded.csv``; a search that
@@ -28,7 +28,7 @@ from robbdd_tools.run.run_policy import Policy
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded.csv"
-PROBLEMS = ("rim", "grip", "reach")
+PROBLEMS = ("rim", "grip", "reach", "belt", "over")
 SEEDS, BUDGET = 20, 40
 
 

@@ -13,6 +13,8 @@ import numpy as np
 
 from robbdd_tools.campaign.rates import rate_interval
 
+COLOURS = {"uniform": "#d29922", "sobol": "#2ea043", "cma-es": "#3f8fd6", "boundary": "#a371f7"}
+"""Methods in the order of the tables, with their colours in the plot."""
 PLOT = Path(__file__).parents[3] / "docs/images/falsification.svg"
 
 
@@ -51,7 +53,7 @@ def _firsts(found: Sequence[Search], budget: int) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     for problem in dict.fromkeys(one.problem for one in found):
         base = _points(found, problem, "uniform")
-        for method in ("uniform", "sobol", "cma-es"):
+        for method in COLOURS:
             own = _points(found, problem, method)
             if own:
                 hits = sum(one.failures > 0 for one in found if (one.problem, one.method) == (problem, method))
@@ -97,9 +99,9 @@ def draw(found: Sequence[Search], budget: int, path: Path) -> None:
     pyplot: Any = import_module("matplotlib.pyplot")
     import_module("matplotlib").rcParams["svg.hashsalt"] = "robbdd"
     problems = list(dict.fromkeys(one.problem for one in found))
-    figure, axes = pyplot.subplots(1, len(problems), figsize=(9.0, 3.0), sharey=True, squeeze=False)
+    figure, axes = pyplot.subplots(1, len(problems), figsize=(11.0, 3.0), sharey=True, squeeze=False)
     for axis, problem in zip(axes[0], problems, strict=True):
-        for method, colour in (("uniform", "#d29922"), ("sobol", "#2ea043"), ("cma-es", "#3f8fd6")):
+        for method, colour in COLOURS.items():
             own = [one for one in found if (one.problem, one.method) == (problem, method)]
             hits = sorted(one.points for one in own if one.failures)
             shares = [100.0 * number / max(1, len(own)) for number in range(len(hits) + 1)]
