@@ -27,9 +27,9 @@ def titles(text: str) -> list[str]:
 TRIED = {
     *BROKEN,
     *("model-file", "model-name", "clause-undefined", "python-source", "unknown-namespace", "imported-statement"),
-    "log-name",
+    *("log-name", "pose"),
 }
-"""Codes with a fix; those of files that are not models, of logs and of imported graphs have their own tests.
+"""Codes with a fix; those of files that are not models, of logs, imported graphs and built scenes have their own tests.
 
 The fix of a clause without a step is a command, which writes such a file.
 """

@@ -22,6 +22,7 @@ from robbdd_tools.checks.model_name import CODE as MODEL_NAME
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.protocol.scene_faults import FaultKind, SceneFault
 from robbdd_tools.syntax import tree
+from robbdd_tools.workbench.first_pose import first_pose
 from robbdd_tools.workbench.model_entries import entry_span
 
 if TYPE_CHECKING:
@@ -169,4 +170,5 @@ def _diagnostic(snapshot: Snapshot, uri: str, fault: SceneFault) -> Diagnostic:
     token = _TOKEN.match(document.text, start)
     entry = None if fault.entry is None else entry_span(snapshot, place, start, fault.entry)
     span = entry or Span(start, start if token is None else token.end())
-    return Diagnostic(place, span, Severity.WARNING, code, fault.reason)
+    fixes = tuple(first_pose(snapshot, place, start)) if code == "pose" else ()
+    return Diagnostic(place, span, Severity.WARNING, code, fault.reason, fixes=fixes)

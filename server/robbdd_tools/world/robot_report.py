@@ -74,7 +74,16 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     if finger_motion(robot).narrowest > SAME:
         yield f"closed gripper: its faces stay {1000 * finger_motion(robot).narrowest:.0f} mm apart"
     faces = finger_motion(robot).faces or tuple((pad,) for pad in robot.pads)
-    yield f"gripping faces: {' | '.join(', '.join(face) for face in faces)}, {_friction(model, name, robot)}"
+    shown = " | ".join(", ".join(_shape(model, name, shape) for shape in face) for face in faces)
+    yield f"gripping faces: {shown}, {_friction(model, name, robot)}"
+
+
+def _shape(model: Any, name: str, shape: str) -> str:
+    """Return the name of a gripping shape in the file or, without one, that of its link."""
+    if not shape.startswith(FOUND):
+        return shape
+    body = model.body(int(model.geom(f"{name}/{shape}").bodyid[0]))
+    return f"a shape of '{body.name.removeprefix(f'{name}/')}'"
 
 
 def _fingers(model: Any, name: str, robot: RobotModel) -> str:
