@@ -40,7 +40,7 @@ def test_it_says_what_was_found_and_writes_a_picture_or_what_to_install(
         "  turn   rotating  none in the file: one turn  2.5 rad/s      ",
         "home: found by a search: the tool points down, the arm reaches far",
         "gripper: actuator 'grip', open at 0.04, closed at 0, 80 mm wide",
-        "gripping faces: a shape of 'left' | a shape of 'right', friction ",
+        "gripping faces: a shape of 'thumb' | a shape of 'finger', friction 0.9",
         "        velocity: (0.8, 0.8, 0.5, 2.5) rad/s   // sliding joints in m/s",
     ):
         assert line in said.out
