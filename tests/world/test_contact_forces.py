@@ -32,7 +32,8 @@ FALLING = f"""\
       <freejoint/>
       <geom type="sphere" size="0.05" mass="2" solref="0.005 1"/>
     </body>
-    <body name="part" pos="0 0 {{part}}">
+    <body name="case"/>
+    <body name="{{name}}" pos="0 0 {{part}}">
       <freejoint/>
       <geom type="box" size="0.05 0.05 0.05" mass="3"/>
     </body>
@@ -44,10 +45,10 @@ FALLING = f"""\
 class Falling:
     """A fist of 2 kg that falls onto the floor, or onto a part of 3 kg."""
 
-    def __init__(self, height: float, part: float = 5.0) -> None:
-        self.model: Any = mujoco.MjModel.from_xml_string(FALLING.format(height=height, part=part))
+    def __init__(self, height: float, part: float = 5.0, name: str = "part") -> None:
+        self.model: Any = mujoco.MjModel.from_xml_string(FALLING.format(height=height, part=part, name=name))
         self.data: Any = mujoco.MjData(self.model)
-        self.forces = ContactForces(self.model, ["arm"], ["part"], [])
+        self.forces = ContactForces(self.model, ["arm"], ["case", name], [])
         self.touching: list[bool] = []
 
     def run(self, samples: int, held: tuple[str, ...] = ()) -> None:
@@ -117,6 +118,15 @@ def test_what_a_gripped_part_hits_is_told_apart_from_what_it_was_picked_up_from(
     assert dropped.forces.hit_since(0, "arm") == ()
     dropped.run(20, held=("part",))
     assert dropped.forces.hit_since(40, "part") == ()
+
+
+def test_a_blow_on_a_moving_part_counts_for_the_object_that_it_belongs_to() -> None:
+    falling = Falling(height=0.5, part=0.2, name="case/lid")
+    falling.run(20)
+    peaks = falling.forces.peaks(20)
+    assert peaks["arm", "case/lid"].max() > 100.0
+    assert np.array_equal(peaks["arm", "case"], peaks["arm", "case/lid"])
+    assert falling.forces.touched_since(0, "arm") == ("case/lid",)
 
 
 def test_what_fingers_press_on_what_they_grip_is_measured() -> None:

@@ -28,6 +28,7 @@ SHAPES = """<mujoco><worldbody>
     <freejoint/><geom type="sphere" size=".02" pos="0 0 .5"/><geom type="capsule" size=".01 .1" pos="0 0 -.5"/>
   </body>
   <body name="ghost"><geom type="box" size="1 1 1" contype="0" conaffinity="0"/></body>
+  <body name="box/lid"><geom type="sphere" size=".05" pos="0 0 2"/></body>
   <body name="ground"><geom type="plane" size="1 1 1"/></body>
 </worldbody></mujoco>"""
 
@@ -36,7 +37,7 @@ def sampler(*states: list[float]) -> GapSampler:
     """Measure between the shapes, at poses of the ball and of the pair: positions, (m) without turns."""
     model = mujoco.MjModel.from_xml_string(SHAPES)
     full = np.array([[*state[:3], 1, 0, 0, 0, *state[3:], 1, 0, 0, 0] for state in states])
-    objects = dict.fromkeys(("box", "ball", "pair", "ghost", "ground"))
+    objects = dict.fromkeys(("box", "box/lid", "ball", "pair", "ghost", "ground"))
     regions = {"both_ws": (("box", None), ("pair", None)), "ghost_ws": (("ghost", None),)}
     cast_ = SimpleNamespace(objects=objects, regions=regions)
     found = SimpleNamespace(
@@ -60,6 +61,12 @@ def test_the_gap_of_a_ball_and_a_box_is_exact(place: tuple[float, float, float],
     gaps = sampler([*place, 5.0, 5.0, 5.0])
     gaps.sample("ball", "box", range(1))
     assert gaps.record(1)["ball", "box"] == pytest.approx([gap], abs=1e-6)
+
+
+def test_an_undeclared_moving_part_is_a_surface_of_its_object() -> None:
+    gaps = sampler([0, 0, 1.8, 5.0, 5.0, 5.0])
+    gaps.sample("ball", "box", range(1))
+    assert gaps.record(1)["ball", "box"] == pytest.approx([0.1], abs=1e-6)
 
 
 def test_the_nearest_of_all_surfaces_counts_and_each_sample_is_measured_at_its_own_state() -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from robbdd_tools.agent.behaviour_calls import Timing
 from robbdd_tools.monitor.trace import Trace
-from world.worlds import BALL, BIN, BIN_WS, CUBE, PANDA, execution, pick_place
+from world.worlds import BALL, BIN, BIN_WS, CUBE, PANDA, SCENE, execution, pick_place
 
 pytestmark = pytest.mark.physics
 BENCH = "env:bench"
@@ -36,6 +38,21 @@ def test_a_contact_ends_when_the_object_leaves_and_begins_where_it_arrives(carri
     assert carried.touches[CUBE, BIN][-1] > 0.1
     assert (CUBE, BENCH) in carried.touches
     assert carried.touches[CUBE, BENCH][-1] == 0.0
+
+
+def test_what_lies_in_a_drawer_touches_the_chest_that_it_belongs_to() -> None:
+    drawer = "env:drawer"
+    scene = replace(
+        SCENE,
+        objects=(CUBE, drawer, "env:bench"),
+        workspaces={"env:bench_ws": ("env:bench",), "env:drawer_ws": (drawer,)},
+        contains={"env:bench_ws": ("env:drawer_ws",)},
+        places={CUBE: "env:drawer_ws"},
+    )
+    run = execution(scene=scene, timing=Timing(tail=0.5, touching=frozenset({CUBE})))
+    trace = run.complete(run.advance_until(lambda _: False))
+    assert trace.touches[CUBE, drawer][-1] > 0.1
+    assert list(trace.touches) == [(CUBE, drawer)]
 
 
 def test_both_sides_of_a_contact_have_the_same_force(carried: Trace) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from robbdd_tools.catalog.predicates.does_not_collide import FORCE_LIMIT
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.world.engine import TICK, mujoco
-from robbdd_tools.world.owners import geom_owners
+from robbdd_tools.world.owners import geom_owners, whole_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -31,9 +31,10 @@ class ContactForces:
 
     A sample has, for each agent and each thing that it touches, the largest force (N) and the impulse (N s) since the
     previous sample. Objects and agents (also the agent itself) are given by name, anything else by the name of its body
-    or geom. A gripped object counts with the force beyond its own weight: a part that still stands on a table exerts
-    nothing. Forces are measured in every step. Only the steady force between an agent and its gripped object is
-    measured once per sample, except for the objects ``in_every_step``.
+    or geom. A moving part that the scene does not declare also counts as the object that it belongs to. A gripped
+    object counts with the force beyond its own weight: a part that still stands on a table exerts nothing. Forces are
+    measured in every step. Only the steady force between an agent and its gripped object is measured once per sample,
+    except for the objects ``in_every_step``.
     """
 
     def __init__(self, model: Any, agents: Iterable[str], things: Iterable[str], in_every_step: Iterable[str]) -> None:
@@ -44,6 +45,7 @@ class ContactForces:
         self._step = float(model.opt.timestep)
         gravity = float(np.linalg.norm(model.opt.gravity))
         self._weights = {thing: float(model.body(thing).subtreemass[0]) * gravity for thing in things}
+        self._wholes = {thing: whole for thing in self._weights if (whole := whole_of(thing, self._weights)) != thing}
         self._in_every_step = frozenset(in_every_step)
         self._wrench: FloatArray = np.zeros(6)
         self.clear()
@@ -99,7 +101,8 @@ class ContactForces:
     def touched_since(self, row: int, agent: str) -> tuple[str, ...]:
         """Return the names of the things that an agent has touched since a sample."""
         pairs = ((other, rows) for (one, other), rows in self._peaks.items() if one == agent)
-        return tuple(sorted(other for other, rows in pairs if any(one >= row for one in rows)))
+        found = {other for other, rows in pairs if any(one >= row for one in rows)}
+        return tuple(sorted(found - {self._wholes.get(other) for other in found}))
 
     def hit_since(self, row: int, thing: str) -> tuple[str, ...]:
         """Return what a gripped thing has touched for the first time, or hardest, since a sample.
@@ -175,6 +178,8 @@ class ContactForces:
         for (agent, part, other), (size, down) in forces.items():
             force = size - min(down, self._weights.get(part, 0.0)) if part else size
             pressed[agent, other] += force
+            if other in self._wholes:
+                pressed[agent, self._wholes[other]] += force
             if not part and (agent, part, other) not in self._contacts:
                 # Closing fingers may lift a part a little before they grip it.
                 self._note_supports(data, other)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.owners import geom_owners
+from robbdd_tools.world.owners import geom_owners, whole_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,11 +53,11 @@ class GapSampler:
     @cached_property
     def _geoms(self) -> Mapping[str, NDArray[np.intp]]:
         """The geoms of each element that can be measured."""
-        model = self._simulation.model
-        owners = np.array(geom_owners(model, self._simulation.robots))
+        model, objects = self._simulation.model, self._simulation.world.cast.objects
+        owners = np.array([whole_of(one, objects) for one in geom_owners(model, self._simulation.robots)])
         solid = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
         found: dict[str, NDArray[np.intp]] = {}
-        for name in (*self._simulation.world.cast.objects, *self._simulation.robots):
+        for name in (*objects, *self._simulation.robots):
             geoms = np.flatnonzero((owners == name) & solid)
             if geoms.size and MEASURABLE.issuperset(model.geom_type[geoms].tolist()):
                 found[name] = geoms

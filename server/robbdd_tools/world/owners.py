@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 SCENERY = "scenery"
@@ -28,6 +28,12 @@ def is_scenery(name: str) -> bool:
 def joint_of_part(name: str) -> str:
     """Return the name of a moving part's joint in the world."""
     return f"{name}/joint"
+
+
+def whole_of(name: str, objects: Collection[str]) -> str:
+    """Return the object that a moving part belongs to if the scene does not declare the part, else the name itself."""
+    whole = name.rpartition("/")[0]
+    return whole if whole in objects else name
 
 
 def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:

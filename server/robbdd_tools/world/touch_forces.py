@@ -10,7 +10,7 @@ import numpy as np
 
 from robbdd_tools.world.contact_forces import Pair, series
 from robbdd_tools.world.engine import mujoco
-from robbdd_tools.world.owners import geom_owners
+from robbdd_tools.world.owners import geom_owners, whole_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -19,16 +19,17 @@ if TYPE_CHECKING:
 class TouchForces:
     """Forces between each of the watched elements and the elements that it touches.
 
-    A sample has, for each pair, the largest force (N) since the previous sample, summed over the pair's contacts. The
-    engine has no contacts between sleeping bodies, so these keep the forces of the last step in which one was awake.
+    A sample has, for each pair, the largest force (N) since the previous sample, summed over the pair's contacts. A
+    moving part that the scene does not declare counts as the object that it belongs to. The engine has no contacts
+    between sleeping bodies, so these keep the forces of the last step in which one was awake.
     """
 
     def __init__(self, model: Any, watched: Iterable[str], objects: Iterable[str], robots: Iterable[str]) -> None:
         """Watch the elements ``watched`` among all ``objects`` and ``robots``."""
         self._model = model
         self.watched = tuple(watched)
-        self._owners = geom_owners(model, robots)
         self._bodies = {name: int(model.body(name).id) for name in objects}
+        self._owners = [whole_of(owner, self._bodies) for owner in geom_owners(model, robots)]
         self._wrench: FloatArray = np.zeros(6)
         self._latest: dict[Pair, float] = {}
         self._rows: defaultdict[Pair, dict[int, float]] = defaultdict(dict)
