@@ -100,6 +100,30 @@ def test_a_moment_without_contact_is_no_drop() -> None:
     assert dropped([1.0, 0.0, 1.0, 1.0], still(4, (0.5, 0.5, 0.3))).outcome is Outcome.HOLDS
 
 
+@pytest.mark.parametrize(
+    ("giver", "receiver", "is_dropped"),
+    [
+        # Handed over, and lowered by the receiver.
+        ([1, 1, 0, 0, 0], [0, 1, 1, 1, 1], False),
+        # Handed over, and dropped by the receiver.
+        ([1, 1, 0, 0, 0], [0, 1, 1, 0, 0], False),
+        # Dropped before the receiver has it.
+        ([1, 1, 0, 0, 0], [0, 0, 0, 0, 1], True),
+        # Handed back, and dropped by the giver.
+        ([1, 0, 1, 1, 0], [0, 1, 1, 0, 0], True),
+        ([1, 1, 0, 0, 0], None, True),
+    ],
+)
+def test_what_another_agent_has_taken_over_is_dropped_by_neither_or_by_it(
+    giver: list[float], receiver: list[float] | None, is_dropped: bool
+) -> None:
+    bodies = {"tray": still(5), "far": still(5, (1.0, 0.0, 0.0)), "ball": heights([0.5, 0.5, 0.5, 0.44, 0.3])}
+    grips = {"arm": {"ball": giver}} | ({} if receiver is None else {"other": {"ball": receiver}})
+    trace = trace_of(bodies, {"start": 0.0, "end": 0.4}, grips)
+    found = judged("does-not-drop", trace, agent="arm", object="ball")
+    assert found.outcome is (Outcome.VIOLATED if is_dropped else Outcome.HOLDS)
+
+
 def test_can_reach_is_the_margin_that_was_measured() -> None:
     margins = np.array([0.4, 0.2, np.nan])
     trace = replace(world(3), reaches={("arm", "tray"): margins}, events=(EventStamp("e", 0.1),))

@@ -128,6 +128,11 @@ class Evidence(Protocol):
         """The workspaces of the scene that some object carries."""
         ...
 
+    @property
+    def grippers(self) -> Sequence[str]:
+        """The agents whose grips are known."""
+        ...
+
     def gripped(self, agent: str, name: str) -> FloatArray:
         """Return 1.0 where the agent's gripping faces hold the object, else 0.0, shape (n,)."""
         ...
@@ -137,10 +142,7 @@ class Evidence(Protocol):
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Return the largest contact force (N) with an agent since the previous sample, shape (n,).
-
-        Forces on a gripped object count, too, less the object's weight.
-        """
+        """Return the largest contact force (N) since the last sample, with that of what the agent grips, (n,)."""
         ...
 
     def touch(self, one: str, other: str) -> FloatArray:
@@ -237,8 +239,7 @@ class Behaviour:
     """A behaviour that an agent executes in ``When``.
 
     ``events`` are the names of the events that it emits, in order. The first and the last of them delimit its duration.
-    ``aliases`` are other forms of ``phrase`` with the same slots. ``synonyms`` are wrong words that users write for it;
-    the error message then names the behaviour.
+    ``aliases`` and ``synonyms`` are those of ``Predicate``.
     """
 
     name: str
@@ -307,8 +308,7 @@ class GripperKind(StrEnum):
 class RobotModel:
     """A robot arm with its tool, for agents with one of ``prefixes`` in their name or their set's name.
 
-    - ``mjcf``: a model file in the folder of the catalog file.
-    - ``home``: the initial joint positions (rad).
+    - ``mjcf``: a model file in the folder of the catalog file; ``home``: the initial joint positions (rad).
     - ``velocity_limits`` (rad/s) and ``torque_limits`` (N m): the published limits of each arm joint.
     - ``joints``, ``tool_site`` and ``gripper_actuator``: names in the model file; ``pads``: its gripping faces.
     - ``gripper_open`` and ``gripper_closed``: control values of the gripper's actuator.

@@ -237,6 +237,11 @@ class WindowEvidence:
         """Return the names of the workspaces that have regions."""
         return tuple(self.regions_of)
 
+    @property
+    def grippers(self) -> Sequence[str]:
+        """The agents whose grips are recorded."""
+        return tuple(self.trace.grips)
+
     def gripped(self, agent: str, name: str) -> FloatArray:
         """Return 1.0 at each sample where ``agent`` grips ``name``, else 0.0, shape (n,).
 

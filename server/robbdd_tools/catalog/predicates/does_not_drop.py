@@ -26,22 +26,32 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
     While the object is held, this is ``LIMIT``. Otherwise, it is ``LIMIT`` minus the drop since the object was last
     held or at rest. If the object is at rest, it is at most the distance to the faces of the best workspace (negative
-    outside).
+    outside). From when another agent holds the object, this agent cannot drop it until it holds it again.
     """
     import numpy as np
 
     name = str(arguments["object"])
     position = evidence.position(name)
-    held = evidence.gripped(str(arguments["agent"]), name) > 0
+    agent = str(arguments["agent"])
+    held = evidence.gripped(agent, name) > 0
     resting = _resting(evidence.times, position, held)
     supported = held | resting
     supported[0] = True
-    since = np.maximum.accumulate(np.where(supported, np.arange(len(position)), 0))
+    since = _last(supported)
     margins = LIMIT - (position[since, 2] - position[:, 2])
     if evidence.workspaces:
         inside = inside_margin(evidence, name, evidence.workspaces)
         margins = np.where(resting, np.minimum(margins, inside), margins)
-    return np.where(held, LIMIT, np.minimum(margins, LIMIT))
+    others = [evidence.gripped(other, name) > 0 for other in evidence.grippers if other != agent]
+    is_taken = _last(np.any(others, axis=0)) > _last(held) if others else np.zeros_like(held)
+    return np.where(held | is_taken, LIMIT, np.minimum(margins, LIMIT))
+
+
+def _last(true: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Return, for each sample, the last one up to it at which something was true, -1 without one."""
+    import numpy as np
+
+    return np.maximum.accumulate(np.where(true, np.arange(len(true)), -1))
 
 
 def _resting(times: FloatArray, position: FloatArray, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -66,6 +76,9 @@ DOES_NOT_DROP = Predicate(
     ),
     sentence='"{agent}" does not drop "{object}"',
     unit="m",
-    doc="The object is held by the agent or at rest on a workspace; in between it falls by less than 0.05 m.",
+    doc=(
+        "The object is held by the agent or at rest on a workspace; in between it falls by less than 0.05 m. What "
+        "another agent has taken over is no longer the agent's."
+    ),
     evaluate=margin,
 )
