@@ -38,5 +38,11 @@ def test_a_target_is_left_out_for_the_agent_of_its_clause() -> None:
         assert others(named.format(target)) == [("e:other", "e:table"), ("e:arm", "floor")]
 
 
+def test_an_undeclared_moving_part_belongs_to_the_target() -> None:
+    trace = replace(TRACE, contacts=(contact("e:arm", "e:table/drawer"), contact("e:arm", "e:bin")))
+    clause = read_clause('"e:arm" does not collide "e:table" from "e:start" until "e:end"')
+    assert [one.other for one in unnamed_contacts([clause], trace, REGIONS)] == ["e:bin"]
+
+
 def test_other_clauses_name_no_target() -> None:
     assert len(others('"e:arm" does not drop "e:table" from "e:start" until "e:end"')) == 3

@@ -27,7 +27,10 @@ def _of_contact(fluent: Fluent, instance: Instance) -> list[Arguments]:
 
 
 def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) -> tuple[Contact, ...]:
-    """Return the agents' contacts in a trace, except those with targets of *does not collide* in ``clauses``."""
+    """Return the agents' contacts in a trace, except those with targets of *does not collide* in ``clauses``.
+
+    An undeclared moving part (``env:press/door``) belongs to its object.
+    """
     named: set[tuple[str, str]] = set()
     for fluent in (fluent for clause in clauses for fluent in fluents_of(clause)):
         for arguments in (
@@ -36,4 +39,8 @@ def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) 
             agent, target = str(arguments["agent"]), str(arguments["target"])
             carriers = [carrier for carrier, _ in regions.get(target, ())]
             named |= {(agent, carrier) for carrier in carriers or [target]}
-    return tuple(contact for contact in trace.contacts if (contact.agent, contact.other) not in named)
+    return tuple(
+        contact
+        for contact in trace.contacts
+        if named.isdisjoint((contact.agent, name) for name in (contact.other, contact.other.rpartition("/")[0]))
+    )
