@@ -134,6 +134,7 @@ def test_a_position_of_the_tool_is_solved_for_the_joints(tmp_path: Path) -> None
         ('"joints": goal', '"joints": [float("nan")] * 7', r"sent 'joints' that is not a list of 7 finite numbers"),
         ('"opening": 1.0', '"opening": "wide"', r"sent 'opening' that is not a finite number: 'wide'"),
         ('"events": events', '"events": [4]', r"sent 'events' that are no list of at most 100 names: \[4\]"),
+        ('"events": events', '"events": ["pick-over"]', r"sent a wrong event: 'pick-place' has no event 'pick-over'"),
         ('"done": tick == 30', '"done": 1', r"sent 'done' that is neither true nor false: 1"),
         ('"version": 1', '"version": 2', r"answered .* to 'reset', not "),
         ('"type": "command"', '"type": "hello"', r"answered .* to an observation, not "),

@@ -70,6 +70,10 @@ def test_a_behaviour_moves_the_arm_and_stamps_its_events(tmp_path: Path) -> None
             r"failed: NameError: .*own_behaviour_\d+\.py:12\) at",
         ),
         (NOD.replace("world.joints", "world.knees"), r"AttributeError: .*knees.*own_behaviour_\d+\.py:4\)"),
+        (
+            NOD.replace('"pick-end"', '"pick-over"'),
+            r"ValueError: 'pick-place' has no event 'pick-over': it emits pick-start, pick-end, .*:14\)",
+        ),
         ("class Other: pass", r"run\.bddx:5:3: the Python module own_behaviour_\d+ has no function 'Nod'"),
         ("import no_such_module_at_all", r"run\.bddx:5:3: .* failed: ModuleNotFoundError"),
     ],
@@ -80,6 +84,12 @@ def test_an_error_in_the_code_is_told_as_the_users(tmp_path: Path, code: str, wo
     assert re.search(words, execution.broken), execution.broken
     # Later events are unknown: the scenario does not finish.
     assert "t:end" not in [stamp.name for stamp in execution.trace.events]
+
+
+@pytest.mark.physics
+def test_an_event_of_another_behaviour_may_be_emitted_and_concerns_no_clause(tmp_path: Path) -> None:
+    execution = run(tmp_path, NOD.replace('world.emit("place-start")', 'world.emit("push-start")'))
+    assert execution.run_behaviour(0), execution.trace.remark
 
 
 @pytest.mark.physics

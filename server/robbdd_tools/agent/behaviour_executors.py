@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robbdd_tools.agent.swapped_elements import with_swapped_element
 from robbdd_tools.catalog.executors import TIMED
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.drive_base import DriveBase
 from robbdd_tools.world.errors import BehaviourError, SceneError
 from robbdd_tools.world.external_behaviour import run_external_behaviour
@@ -111,12 +113,19 @@ class BehaviourExecutors:
             one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"
             raise SceneError(f"'{call.behaviour}' cannot place at {one}: nothing in the scene carries that workspace")
 
+    def _emit_own(self, behaviour: str, event: str) -> None:
+        """Emit an event of a user's behaviour. Raises ``ValueError`` for a name that no behaviour has for an event."""
+        known = load_catalog().behaviours
+        if not any(event in one.events for one in known.values()):
+            raise ValueError(f"'{behaviour}' has no event {event!r:.60}: it emits {', '.join(known[behaviour].events)}")
+        self._emit(event)
+
     def _behaviour(self, call: Call) -> Iterator[None]:
         controller = self.controller(call.element("agent"))
         if self._fault is not None:
             call = with_swapped_element(call, self._fault, self._simulation)
         if self._implementation is not None and self.is_users:
-            world = AgentWorld(self._simulation, call.element("agent"), self._emit)
+            world = AgentWorld(self._simulation, call.element("agent"), partial(self._emit_own, call.behaviour))
             run = run_user_behaviour if self._implementation.kind == "python" else run_external_behaviour
             steps = run(self._implementation, world, call.behaviour, call.arguments)
             return steps if self._simulation.pace == 1.0 else _at_pace(steps, self._simulation.pace)

@@ -119,7 +119,10 @@ class World(Protocol):
         ...
 
     def emit(self, event: str) -> None:
-        """Report that an event of the behaviour occurs now: ``pick-start``, ``pick-end`` …"""
+        """Report that an event of the behaviour occurs now: ``pick-start``, ``pick-end`` …
+
+        Raises ``ValueError`` for a name that no behaviour of the language has for an event.
+        """
         ...
 
 

@@ -123,7 +123,10 @@ def _obey(world: AgentWorld, answer: Mapping[str, Any]) -> bool:
     if len(events) > MOST_EVENTS or not all(isinstance(one, str) for one in events):
         raise SystemFailed(f"sent 'events' that are no list of at most {MOST_EVENTS} names: {stated!r:.80}")
     for event in events:
-        world.emit(str(event))
+        try:
+            world.emit(str(event))
+        except ValueError as error:
+            raise SystemFailed(f"sent a wrong event: {error}") from error
     if "joints" in answer or "tool" in answer:
         opening = _numbers(answer, "opening", (), 1.0)
         if "joints" in answer:
