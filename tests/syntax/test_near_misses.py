@@ -78,6 +78,11 @@ def changed(old: str, new: str) -> str:
         (changed("task: <task>", "task: <task>;"), ";", "no line ends with ';'"),
         (changed("task: <task>", "task = <task>"), "=", "write ':' instead of '='"),
         (changed("    var part\n", "    var part: object\n"), ": object", "variables have no declared type"),
+        (
+            changed(IN_TRAY, "quick: holds(takes less than 5 s, from <pick-start> until <place-end>)"),
+            "takes",
+            "a duration is required by 'it takes less than 12 s",
+        ),
         (changed("    var part\n", "    # the part\n    var part\n"), "#", "a comment starts with '//'"),
         (changed("    var part\n", "    /* the part */\n    var part\n"), "/*", "a comment starts with '//'"),
         (changed("Scenario bench-to-tray", "Scenario: bench-to-tray"), ":", "no ':' is allowed before the name"),

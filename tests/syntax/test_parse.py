@@ -132,6 +132,12 @@ def test_a_fault_names_its_place_and_what_was_expected(text: str, place: str, wo
         ("bdd", "Behaviour (ns=t) b { }", "'Behaviour' belongs inside 'Scenario Template … { … }': move it there"),
         ("bdd", "Scenario s { }", "'Scenario' belongs inside 'User Story … { … }': move it there"),
         ("bdd", "kgraph (ns=t) g { }", "'kgraph' belongs inside 'scene inst … { … }' of a .scenex file: move it there"),
+        (
+            "bddx",
+            "Scenario Execution (ns=t) x { }",
+            "'Scenario' does not begin a declaration here: write 'Scenario Exec'",
+        ),
+        ("bddx", "obs (ns=t) x { }", "'obs' does not begin a declaration here: write 'obs provider'"),
         ("bdd", "nonsense", "unexpected 'nonsense' after the end of the declaration"),
     ],
 )

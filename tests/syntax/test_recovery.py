@@ -10,6 +10,7 @@ import pytest
 
 from kit import MODEL, fixture
 from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.parse import parse_declaration
 
 TEMPLATE = MODEL[MODEL.index("Scenario Template") : MODEL.index("User Story")]
@@ -124,6 +125,26 @@ def test_a_missing_name_is_reported_once_and_invents_nothing() -> None:
     declaration = parse_declaration("bdd", STORY.replace("Scenario bench-to-tray", "Scenario"))
     assert [fault.message for fault in declaration.faults] == ["unexpected '{': expected a name"]
     assert [symbol.path for symbol in declaration.symbols] == ["fetching"]
+
+
+def test_a_variable_with_a_type_is_still_declared() -> None:
+    declaration = parse_declaration("bdd", TEMPLATE.replace("    var part\n", "    var part: object\n"))
+    assert [fault.message for fault in declaration.faults] == ["variables have no declared type: remove it"]
+    assert "fetch.part" in [symbol.path for symbol in declaration.symbols]
+    assert isinstance(declaration.tree, tree.Template)
+
+
+@pytest.mark.parametrize("value", ["<arms.panda>", "<parts>"])
+def test_a_value_without_braces_is_one_error_and_still_a_value(value: str) -> None:
+    text = STORY.replace("{ <arms.panda> }", value)
+    declaration = parse_declaration("bdd", text)
+    (fault,) = declaration.faults
+    assert text[fault.span.start : fault.span.end] == value
+    assert fault.message == "write '{ <element>, … }' for single values, or 'set <set>' for all elements of a set"
+    assert isinstance(declaration.tree, tree.Story)
+    variation = declaration.tree.variants[0].variation
+    assert isinstance(variation, tree.Product)
+    assert [one.variable.path for one in variation.assignments] == ["fetch.part", "fetch.robot", "fetch.goal"]
 
 
 def test_one_broken_scenario_leaves_its_siblings() -> None:

@@ -26,6 +26,9 @@ def misplaced_part(language: str, text: str, offset: int) -> str | None:
     for kind in (own, *(kind for kind in _KINDS if kind != own)):
         owners = _owners(kind).get(word[0], ())
         if not owners:
+            begun = next((title for title in _titles(kind) if title.startswith(f"{word[0]} ")), None)
+            if begun is not None:
+                return f"'{word[0]}' does not begin a declaration here: write '{begun}'"
             continue
         ended = next((owner for owner in owners if offset and re.match(rf"{owner}\b", text)), None)
         if ended is not None:
@@ -34,6 +37,13 @@ def misplaced_part(language: str, text: str, offset: int) -> str | None:
         file = "" if kind == own else f" of a .{kind} file"
         return f"'{word[0]}' belongs inside {shown}{file}: move it there"
     return None
+
+
+@cache
+def _titles(kind: str) -> tuple[str, ...]:
+    """Return the first words of the named declarations of a file kind."""
+    rules = read_grammar(grammar_text(kind))
+    return tuple(dict.fromkeys(title for rule in rules if (title := _title(rules, rule))))
 
 
 @cache

@@ -55,6 +55,7 @@ _NEAR_MISSES = (
         r"\bholds\s*\(\s*\Z", r"(?:at (?:least|most)|exactly|all|every|each|some|any|no|none|both)\b(?!-)", _COUNT, "<"
     ),
     NearMiss(r"\bholds\s*\(\s*\Z", r"(?:the )?(?:duration|time|total time)\b(?!-)", _DURATION, "<"),
+    NearMiss(r"\bholds\s*\(\s*\Z", r"takes\b(?!-)", _DURATION, "<", "it {}".format),
     NearMiss(r"\bholds\s*\(\s*\Z", r"(?:the )?distance\b(?!-)", _DISTANCE, "<"),
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
@@ -71,6 +72,12 @@ _NEAR_MISSES = (
         rf"(?<!set)\svar\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
         r"(?:(?:obj|ws|agn)\s+)?set\b(?=\s*<)",
         "all elements of a set are written without braces: 'var <…>: set <set>'",
+    ),
+    NearMiss(
+        rf"(?<!set)\svar\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\Z",
+        rf"<\s*{_NAME}(?:\.{_NAME})*\s*>",
+        "write '{ <element>, … }' for single values, or 'set <set>' for all elements of a set",
+        "{",
     ),
     NearMiss(
         r"(?<![\w\-])(?:obj|agn)\s+\Z", r"<", "a scene lists sets: write 'obj set <set>' or 'agn set <set>'", "set"

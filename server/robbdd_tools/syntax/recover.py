@@ -32,6 +32,8 @@ HOLE = "\u02ad"
 NOTHING = 'pred("")'
 """A predicate without content; no rule checks it."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
+_TYPE = re.compile(r"\bvar\s+[^\W\d][\w\-]*\s*(?P<type>:\s*[\w\-]+)")
+_VALUE = re.compile(r"\bvar\s*<[^<>]*>\s*:\s+(?P<value><[^<>]*>)")
 _UNFINISHED_COLUMNS = re.compile(r"(\bwith|,)\s*\Z")
 _JOINING = re.compile(r"(?:\s|//[^\n]*\n)*(?:and|or)\b")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
@@ -142,6 +144,8 @@ def _repairs(language: str, text: str, stopped: Rejected) -> Iterator[Repair]:
     if name is not None:
         yield replace(_blanked(text, name), is_certain=True)
     yield from _single_values(text, offset)
+    yield from _typed_variable(text, offset)
+    yield from _value_without_braces(text, offset)
     yield from _missing_column(text, stopped)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
     if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
@@ -179,6 +183,22 @@ def _single_values(text: str, offset: int) -> Iterator[Repair]:
     found = _SET_OF_VALUES.search(text, max(0, offset - 200), offset)
     if found:
         yield _blanked(text, Span(*found.span("set")))
+
+
+def _typed_variable(text: str, offset: int) -> Iterator[Repair]:
+    """Leave out the type of a variable."""
+    for found in _TYPE.finditer(text, max(0, offset - 200), offset + 200):
+        if found.start("type") == offset:
+            yield replace(_blanked(text, Span(*found.span("type"))), is_certain=True)
+
+
+def _value_without_braces(text: str, offset: int) -> Iterator[Repair]:
+    """Put the only value of a variable into braces."""
+    for found in _VALUE.finditer(text, max(0, offset - 200), offset + 200):
+        start, end = found.span("value")
+        if start == offset and text[end : end + 1].isspace():
+            repaired = f"{text[: start - 1]}{{{found['value']}}}{text[end + 1 :]}"
+            yield Repair(repaired, Span(start, end), None, is_certain=True)
 
 
 def _missing_column(text: str, stopped: Rejected) -> Iterator[Repair]:
