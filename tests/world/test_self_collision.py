@@ -16,11 +16,11 @@ from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
 from robbdd_tools.world.clearance import Clearance
-from robbdd_tools.world.composition import COLUMN
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.motion import ToolPose, frame_of
 from robbdd_tools.world.reaching import Obstruction
 from robbdd_tools.world.robot_specs import load_robot
+from robbdd_tools.world.robots_in_world import COLUMN
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from world.worlds import CUBE, PANDA, execution, pick_place
 

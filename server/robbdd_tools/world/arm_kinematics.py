@@ -15,6 +15,7 @@ from robbdd_tools.world.errors import BehaviourError
 from robbdd_tools.world.hanging_arms import is_hung, slides_sideways
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.robot_specs import load_robot
+from robbdd_tools.world.shoulders import shoulder_aside
 from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
 
 if TYPE_CHECKING:
@@ -109,6 +110,12 @@ class Arm:
         place, _ = self.forward(self.home)
         is_gantry = slides_sideways(self._model, self._data, self._numbers[0])
         return is_hung(self._data, self._numbers) or (is_gantry and float(place[2]) < 0.0)
+
+    @cached_property
+    def aside(self) -> float:
+        """How far (m) to the left of the middle of its base the arm turns by its first joint."""
+        self.forward(self.home)
+        return shoulder_aside(self._model, self._data, self._numbers[0])
 
     @cached_property
     def stroke(self) -> tuple[float, float]:

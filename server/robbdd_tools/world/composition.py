@@ -5,16 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.base.solid_shapes import Solid, SolidKind
-from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
+from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
-from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
@@ -29,27 +27,19 @@ from robbdd_tools.world.friction import (
 )
 from robbdd_tools.world.grip_force import limit_grip
 from robbdd_tools.world.laid_out import laid_out
-from robbdd_tools.world.mobile_base import base_of, drive_by_servos
+from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import FLOOR, TABLE_TOP, Pose, arrange, mounts
-from robbdd_tools.world.robot_specs import load_robot
+from robbdd_tools.world.robots_in_world import THINGS, add_robots, attach
 from robbdd_tools.world.scene import Cast, cast_scene
-from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from robbdd_tools.world.solids import ENGINE
 from robbdd_tools.world.staging import Staging
-from robbdd_tools.world.tilted_base import UPRIGHT, rotation_of
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.protocol.specs import SceneSpec
 
-THINGS = 1
-"""Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
-COLUMN = "robbdd-column"
-"""Name of the body of the pedestal, which is added to the bodies of the robot's file."""
-LOW = 1e-3
-"""An arm whose base is less than twice this high (m) above the floor stands on the floor."""
 TORSION, ROLLING = 0.005, 0.0005
 """Torsional and rolling friction of objects, m; without rolling friction, a ball never comes to rest."""
 
@@ -120,8 +110,8 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
         carrier = cast.objects.get("" if model.joint is None else model.joint.parent)
         pose = poses[name] if carrier is None or model.joint is None else pose_at_zero(model, carrier)
         _add_object(spec, name, model, pose, len(bases))
-    for index, (name, robot) in enumerate(cast.agents.items()):
-        _add_robot(spec, name, robot, bases[name], index, len(bases))
+    add_robots(spec, cast.agents, bases)
+    for name, robot in cast.agents.items():
         if (force := cast.chosen.get((name, "grip_force"))) is not None:
             limit_grip(spec, name, robot, force[0])
         _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (0.0,))[0])
@@ -243,50 +233,7 @@ def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
         if geom.contype or geom.conaffinity:
             geom.contype = THINGS
             geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
-    _attach(spec, child, prefix, spec.worldbody.add_frame())
-
-
-def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, count: int) -> None:
-    child = load_robot(robot)
-    name_bodies(child)
-    apart, beside_base = _pairs_apart(robot)
-    robots = sum(2 << other for other in range(count))
-    for geom in child.geoms:
-        if geom.contype or geom.conaffinity:
-            geom.contype = 2 << index
-            geom.conaffinity = THINGS | robots
-    mobile = base_of(robot)
-    if mobile is not None:
-        drive_by_servos(child, mobile)
-    driven = robot.joints if mobile is None else (*robot.joints, *mobile.joints)
-    for servo in child.actuators:
-        if servo.target in driven:
-            # The control input is the speed of the target: a target that jumps with every tick would shake the arm.
-            servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
-            servo.ctrllimited = False
-    turn = rotation_of(base.yaw, robot.tilt)
-    frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
-    _attach(spec, child, f"{name}/", frame)
-    pairs = apart
-    # The thing that carries an arm is part of the scene.
-    if mobile is None and robot.tilt == UPRIGHT and not arm_of(robot).hangs:
-        _add_column(spec, name, base, THINGS | robots)
-        pairs = [*apart, *((COLUMN, body) for body in beside_base)]
-    for one, other in pairs:
-        if spec.body(f"{name}/{one}") is not None:
-            spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
-
-
-def _add_column(spec: Any, name: str, base: Pose, touches: int) -> None:
-    """Add the pedestal of a fixed arm; ``touches`` are the collision groups (bits) that it collides with."""
-    half = (base.position[2] - FLOOR) / 2
-    if half < LOW:
-        return
-    x, y, z = base.position
-    foot = spec.worldbody.add_body(name=f"{name}/{COLUMN}", pos=[x, y, z - half])
-    column = foot.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0])
-    column.contype, column.conaffinity = 0, touches
-    column.rgba = [0.45, 0.47, 0.50, 1.0]
+    attach(spec, child, prefix, spec.worldbody.add_frame())
 
 
 def _pull_from(spec: Any, pads: list[str], distance: float) -> None:
@@ -300,20 +247,6 @@ def _yield_slowly(spec: Any, cast: Cast, geoms: Mapping[str, list[str]]) -> None
     for (element, name), value in cast.chosen.items():
         for geom in geoms[element] if name == "contact_time" else ():
             spec.geom(geom).solref = [value[0], 1.0]
-
-
-def _attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:
-    """Add a model. Where options and sizes of the model's file differ, the world keeps its own."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Attach conflict")
-        spec.attach(child, prefix=prefix, frame=frame)
-
-
-@cache
-def _pairs_apart(robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
-    child = load_robot(robot)
-    name_bodies(child)
-    return pairs_apart(child, robot)
 
 
 def _geom_type(kind: ShapeKind) -> Any:

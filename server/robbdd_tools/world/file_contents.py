@@ -160,12 +160,19 @@ def _rigid_with(body: Any) -> Iterator[Any]:
 
 
 def _drop_dangling(spec: Any, source: ModelSource) -> None:
-    """Remove the actuators and tendons of removed parts; the engine leaves them out only when it compiles."""
     try:
-        model = spec.copy().compile()
+        drop_dangling(spec)
     except ValueError as error:
         words = " ".join(str(error).split())
         raise SceneError(f"the model {source.name} does not compile: {words}", origin=source.origin) from error
+
+
+def drop_dangling(spec: Any) -> None:
+    """Remove the actuators and tendons of removed parts; the engine leaves them out only when it compiles.
+
+    Raises ``ValueError`` if the description does not compile.
+    """
+    model = spec.copy().compile()
     for kind, parts in _dangling(model).items():
         for one in [one for one in getattr(spec, kind) if one.name not in parts]:
             spec.delete(one)

@@ -11,6 +11,7 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.hanging_arms import is_hung, slides_sideways
 from robbdd_tools.world.self_collision import NEAR
+from robbdd_tools.world.shoulders import shoulder_aside
 from robbdd_tools.world.tilted_base import HIGH
 
 if TYPE_CHECKING:
@@ -111,6 +112,7 @@ class _Search:
             # An upright base far above the tables may stand on a pedestal, from which its arm does not reach them.
             self._heights = (*tables, *self._heights) if height >= HIGH and is_upright else tables
             self._levels = tuple(one - height for one in GRASP)
+        self._aside = shoulder_aside(model, self._data, numbers[0])
         self._reach = 0.0
 
     def _usual_heights(self, joints: Sequence[int]) -> tuple[float, ...]:
@@ -151,7 +153,7 @@ class _Search:
         self._reach = max(float(np.hypot(*self._forward(start)[0][:2])) for start in starts)
         for height in self._heights:
             for share in DISTANCES:
-                goal = np.array([share * self._reach, 0.0, height])
+                goal = np.array([share * self._reach, self._aside, height])
                 found = [one for start in starts if (one := self._solved(start, goal)) is not None]
                 clear = [one for one in found if self._is_clear_at(one)]
                 if clear:
@@ -183,7 +185,7 @@ class _Search:
     def _reached(self, posture: FloatArray, height: float) -> int:
         """Return how many places at a height the arm reaches one after the other, without a change of posture."""
         for number, share in enumerate(OUTWARDS):
-            after = self._solved(posture, np.array([share * self._reach, 0.0, height]))
+            after = self._solved(posture, np.array([share * self._reach, self._aside, height]))
             if after is None or np.abs(after - posture).max() > JUMP or not self._is_clear_at(after):
                 return number
             posture = after
@@ -195,7 +197,7 @@ class _Search:
         self._forward(posture)
         stretches: list[float] = np.linalg.svd(self._jacobian()[:3], compute_uv=False).tolist()
         above = float(self._data.xpos[1:, 2].mean())
-        aside = float(np.abs(self._data.xpos[1:, 1]).mean())
+        aside = float(np.abs(self._data.xpos[1:, 1] - self._aside).mean())
         # An arm that bends upwards keeps its elbow off the table; one in the plane of its tool turns to both sides.
         return float(np.min(room)) + stretches[-1] + above - aside
 

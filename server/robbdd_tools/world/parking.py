@@ -38,9 +38,13 @@ def parking_pose(simulation: Simulation, robot: Robot) -> ToolPose | None:
 
 
 def _distance(simulation: Simulation, robot: Robot, pose: ToolPose) -> float:
-    """Return the distance (m) of a tool pose from the nearest base of another arm."""
+    """Return the distance (m) of a tool pose from the nearest base of another arm, or from its shoulder beside it."""
     place = robot.base.at(_in_base(pose)).position
-    others = (other.base.position for other in simulation.robots.values() if other is not robot)
+    others = (
+        other.base.at((0.0, arm_of(other.model).aside, 0.0)).position
+        for other in simulation.robots.values()
+        if other is not robot
+    )
     return min((hypot(place[0] - x, place[1] - y) for x, y, _ in others), default=0.0)
 
 

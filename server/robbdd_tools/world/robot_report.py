@@ -12,7 +12,6 @@ import numpy as np
 from robbdd_tools.base.srdf import srdf_files
 from robbdd_tools.catalog.api import GripperKind
 from robbdd_tools.catalog.executable import ArmModel
-from robbdd_tools.world.composition import COLUMN
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
@@ -23,6 +22,7 @@ from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import load, path_of, velocity_limits
 from robbdd_tools.world.model_meshes import whole_meshes
 from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.robots_in_world import COLUMN
 from robbdd_tools.world.srdf_semantics import file_of
 from robbdd_tools.world.urdf_files import impossible_inertias
 

@@ -1,0 +1,128 @@
+"""Several agents that are the arms of one robot share what carries them; each moves its own arm."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.executable import ArmModel, Implementation, Realisation
+from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.arm_kinematics import arm_of
+from robbdd_tools.world.composition import World
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.motion import frame_of
+from robbdd_tools.world.overlaps import refuse_overlaps
+from robbdd_tools.world.parking import parking_pose
+from world.arms import MJCF
+from world.arms_from_files import source
+from world.scene_instances import instance, link
+from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
+
+LEFT, RIGHT = "env:left", "env:right"
+TORSO = "left+right"
+
+
+def two_arms() -> str:
+    """Return a file with a torso that carries two arms, 0.25 m beside its middle, and a post behind the left one."""
+    both = mujoco.MjSpec()
+    torso = both.worldbody.add_body(name="torso")
+    torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.05, 0.3, 0.02], pos=[-0.1, 0.0, 0.02])
+    torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.1, 0.2], pos=[-0.62, 0.35, 0.2])
+    for prefix, aside in (("l_", 0.25), ("r_", -0.25)):
+        both.attach(mujoco.MjSpec.from_string(MJCF), prefix=prefix, frame=torso.add_frame(pos=[0.0, aside, 0.0]))
+    both.compile()
+    return str(both.to_xml())
+
+
+def begun(folder: Path, tools: tuple[str, str] = ("l_hand", "r_hand"), aside: float = 0.0, **calls: str) -> Execution:
+    """Return an execution with two agents of one file; the second one's base is ``aside`` (m) to the right."""
+    elements = tuple(
+        Realisation(
+            name,
+            (
+                replace(
+                    source(folder, two_arms(), ArmModel(tool=tool)),
+                    iri=f"x:{tool}",
+                    bodies=((f"x:g.{place}", "torso"),),
+                ),
+            ),
+        )
+        for name, tool, place in ((LEFT, tools[0], "one"), (RIGHT, tools[1], "two"))
+    )
+    places = (link("x:g.one.base", (0.0, 0.0, 0.15)), link("x:g.two.base", (0.0, -aside, 0.15)))
+    run = ExecutionSpec(
+        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(*places, elements=elements)
+    )
+    spec = replace(scenario(replace(SCENE, agents=(LEFT, RIGHT)), 1), execution=run)
+    return Execution(spec, [pick_place(CUBE, BIN_WS, agent) for agent in calls.values()])
+
+
+def shaped(world: World) -> Counter[str]:
+    """Count the shapes of each agent, and of what carries them."""
+    bodies = world.model.geom_bodyid
+    names = [str(world.model.body(int(body)).name).partition("/") for body in bodies]
+    return Counter(prefix for prefix, slash, _ in names if slash)
+
+
+def test_the_arms_have_one_torso_and_start_apart(tmp_path: Path) -> None:
+    simulation = begun(tmp_path).simulation
+    found = shaped(simulation.world)
+    alone = shaped(begun(tmp_path, aside=2.0).simulation.world)
+    assert found[LEFT] == found[RIGHT]
+    # The torso's two shapes, two feet and the pedestal.
+    assert found[TORSO] == 5
+    assert alone[LEFT] == found[LEFT] + found[RIGHT] + found[TORSO]
+    refuse_overlaps(simulation)
+    tools = [simulation.data.site_xpos[robot.tool] for robot in simulation.robots.values()]
+    assert [tool[1] for tool in tools] == pytest.approx([0.25, -0.25], abs=0.02)
+
+
+def test_each_arm_parks_on_its_own_side(tmp_path: Path) -> None:
+    simulation = begun(tmp_path).simulation
+    for name, side in ((LEFT, 1.0), (RIGHT, -1.0)):
+        pose = parking_pose(simulation, simulation.robots[name])
+        assert pose is not None
+        assert side * frame_of(pose)[0][1] > 0.2
+    assert [arm_of(robot.model).aside for robot in simulation.robots.values()] == pytest.approx([0.25, -0.25])
+
+
+def test_the_same_arm_twice_overlaps(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="'env:left' and 'env:right' overlap by"):
+        begun(tmp_path, ("l_hand", "l_hand"))
+
+
+def test_robots_at_different_places_are_whole(tmp_path: Path) -> None:
+    found = shaped(begun(tmp_path, aside=2.0).simulation.world)
+    assert TORSO not in found
+    assert found[LEFT] == found[RIGHT]
+
+
+@pytest.mark.physics
+def test_one_arm_carries_and_the_other_stays_clear(tmp_path: Path) -> None:
+    run = begun(tmp_path, first=LEFT)
+    trace = run.advance_until(lambda _: False)
+    assert run.completed == 1, trace.remark
+    moved = np.ptp(trace.positions[:, trace.column(RIGHT)], axis=0).max()
+    assert moved < 0.5
+    forces = run.simulation.forces.peaks(len(trace.times))
+    assert (LEFT, RIGHT) not in forces
+    assert not any(other.startswith(TORSO) for _, other in forces)
+
+
+@pytest.mark.physics
+def test_an_arm_that_hits_the_torso_touches_neither_arm(tmp_path: Path) -> None:
+    simulation = begun(tmp_path).simulation
+    robot = simulation.robots[LEFT]
+    joints = simulation.joint_positions(robot).copy()
+    joints[0] = 2.95  # Towards the post behind the arm.
+    for _ in range(400):
+        simulation.command(robot, joints, robot.model.gripper_open)
+        simulation.tick()
+    hit = {other for agent, other in simulation.forces.peaks(400) if agent == LEFT}
+    assert any(other.startswith(f"{TORSO}/") for other in hit), hit
