@@ -34,9 +34,9 @@ def test_the_same_seed_gives_the_same_search(method: str) -> None:
 
 
 def test_a_rare_failure_needs_fewer_points_than_random_ones() -> None:
-    """The median over 20 seeds; 4.5, 45, 78 and 134 when this was written."""
+    """The median over 20 seeds; 2, 45, 78 and 134 when this was written."""
     searched = {method: median(found(method, seed).searched for seed in range(20)) for method in METHODS}
-    assert searched["boundary"] <= 8
+    assert searched["boundary"] <= 5
     assert searched["cma-es"] < min(searched["sobol"] / 1.5, searched["uniform"] / 2), searched
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit import ROOT
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import ArmModel, Implementation, Realisation
-from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.catalog.executable import ArmModel, Implementation, ModelSource, Origin, Realisation
+from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.composition import World
 from robbdd_tools.world.engine import mujoco
@@ -21,8 +22,9 @@ from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.parking import parking_pose
 from world.arms import MJCF
 from world.arms_from_files import source
+from world.arms_of_others import FOLDER
 from world.scene_instances import instance, link
-from world.worlds import BIN_WS, CUBE, SCENE, pick_place, scenario
+from world.worlds import BIN, BIN_WS, CUBE, SCENE, pick_place, scenario
 
 LEFT, RIGHT = "env:left", "env:right"
 TORSO = "left+right"
@@ -126,3 +128,42 @@ def test_an_arm_that_hits_the_torso_touches_neither_arm(tmp_path: Path) -> None:
         simulation.tick()
     hit = {other for agent, other in simulation.forces.peaks(400) if agent == LEFT}
     assert any(other.startswith(f"{TORSO}/") for other in hit), hit
+
+
+BAXTER = "cmeel.prefix/share/example-robot-data/robots/baxter_description/urdf/baxter.urdf"
+
+
+@pytest.mark.physics
+@pytest.mark.nightly
+@pytest.mark.skipif(not FOLDER.is_dir(), reason="the arms of others are not here: make arms")
+def test_one_arm_of_baxter_moves_what_the_other_one_has_put_down_as_often_as_the_page_says() -> None:
+    places, origin = (link("x:g.torso.base", (-0.2, 0.0, 0.28)),), Origin(str(FOLDER / "cell.scenex"), 3, 7)
+    arms = [
+        ModelSource(
+            f"x:{side}",
+            "urdf",
+            "file",
+            BAXTER,
+            bodies=(("x:g.torso", "torso"),),
+            arm=ArmModel(tool=tool),
+            origin=origin,
+        )
+        for side, tool in (("left", "left_gripper_base_link"), ("right", "right_gripper_base_link"))
+    ]
+    elements = tuple(Realisation(name, (model,)) for name, model in zip((LEFT, RIGHT), arms, strict=True))
+    run = ExecutionSpec(
+        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(*places, elements=elements)
+    )
+    tray = "env:tray_ws"
+    scene = SceneSpec(
+        (CUBE, "env:bench", "env:tray", BIN),
+        (LEFT, RIGHT),
+        {"env:bench_ws": ("env:bench",), tray: ("env:tray",), BIN_WS: (BIN,)},
+    )
+    calls = [pick_place(CUBE, tray, RIGHT), pick_place(CUBE, BIN_WS, LEFT)]
+    done = 0
+    for seed in range(1, 6):
+        execution = Execution(replace(scenario(scene, seed), execution=run), calls)
+        trace = execution.advance_until(lambda _: False)
+        done += execution.completed == 2 and (LEFT, RIGHT) not in execution.simulation.forces.peaks(len(trace.times))
+    assert f"without touching each other in {done} of 5" in (ROOT / "docs/robots.md").read_text(encoding="utf-8")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.world.engine import mujoco
@@ -19,6 +20,8 @@ _JAW = re.compile(r"jaw|grip|finger|claw|mover", re.IGNORECASE)
 """Words in the names of links and joints that are jaws."""
 WIDE, LONG = 2.5, 0.2
 """A jaw turns (rad) or slides (m) by at most this much; a wrist turns farther."""
+MAX_LISTED = 30
+"""Maximum number of names in a message."""
 BARE = 6
 """A branch without fingers is an arm from this many joints on, if it is no finger of an arm itself."""
 
@@ -123,13 +126,16 @@ def tool_body(spec: Any, source: ModelSource, name: str) -> Any:
     site = spec.site(name)
     body = site.parent if site is not None else spec.body(name)
     if body is None:
-        known = f"it has the sites {_names(spec.sites)} and the bodies {_names(spec.bodies[1:])}"
+        near = get_close_matches(name, [str(one.name) for one in (*spec.sites, *spec.bodies[1:])], n=1)
+        sites, bodies = _names(spec.sites), _names(spec.bodies[1:])
+        known = f"did you mean '{near[0]}'?" if near else f"it has the sites {sites} and the bodies {bodies}"
         raise SceneError(f"{source.name} has no site or body '{name}' for the tool; {known}", origin=source.origin)
     return body
 
 
 def _names(things: Any) -> str:
-    return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
+    names = [str(thing.name) for thing in things if thing.name]
+    return ", ".join(names[:MAX_LISTED]) + (" …" if len(names) > MAX_LISTED else "") or "none"
 
 
 def _moves(body: Any) -> bool:

@@ -37,7 +37,7 @@ class JoinedArms:
         return "+".join(map(local_name, self.arms))
 
     def owner(self, body: str) -> str:
-        """Return the prefix of a body of the file in the world: its agent, or ``name``."""
+        """Return whose a body of the file is: its agent, or ``name``."""
         return next((agent for agent, bodies in self.arms.items() if body in bodies), self.name)
 
     def keep_arm(self, spec: Any, agent: str) -> None:
@@ -57,16 +57,24 @@ class JoinedArms:
             spec.delete(spec.body(bodies[0]))
         drop_dangling(spec)
 
-    def apart(self, pairs: Mapping[str, list[tuple[str, str]]]) -> Iterator[tuple[str, str]]:
-        """Yield the pairs of bodies in the world, of an arm and its carrier, whose contacts are ignored.
+    def apart(self, spec: Any, pairs: Mapping[str, list[tuple[str, str]]]) -> Iterator[tuple[str, str]]:
+        """Yield the pairs of bodies in the world with different owners whose contacts are ignored.
 
-        ``pairs`` are those of each agent's description.
+        These are the pairs that the file excludes, and of each agent's ``pairs`` those of its arm and the carrier. The
+        other arms are fixed in an agent's description: what is close to them there means nothing.
         """
+        for exclude in spec.excludes:
+            first, second = str(exclude.bodyname1), str(exclude.bodyname2)
+            if self.owner(first) != self.owner(second):
+                yield self.in_world(first), self.in_world(second)
         for agent, own in pairs.items():
-            for one, other in own:
-                owners = {self.owner(one), self.owner(other)}
-                if owners == {agent, self.name}:
-                    yield f"{self.owner(one)}/{one}", f"{self.owner(other)}/{other}"
+            for first, second in own:
+                if {self.owner(first), self.owner(second)} == {agent, self.name}:
+                    yield self.in_world(first), self.in_world(second)
+
+    def in_world(self, body: str) -> str:
+        """Return the name in the world of a body of the file."""
+        return f"{self.owner(body)}/{body}"
 
 
 def joined_arms(agents: Mapping[str, RobotModel], bases: Mapping[str, Pose]) -> list[JoinedArms]:

@@ -81,11 +81,16 @@ def _add_carrier(spec: Any, joined: JoinedArms, agents: Mapping[str, RobotModel]
             geom.contype, geom.conaffinity = THINGS, THINGS | robots
     attach(spec, child, f"{joined.name}/", _base_frame(spec, base, robot))
     found = {agent: _pairs_apart(agents[agent]) for agent in joined.arms}
-    pairs = list(joined.apart({agent: apart for agent, (apart, _) in found.items()}))
+    pairs = list(joined.apart(load_robot(robot), {agent: apart for agent, (apart, _) in found.items()}))
     if _has_column(robot):
         _add_column(spec, joined.name, base, THINGS | robots)
         column = f"{joined.name}/{COLUMN}"
-        pairs += [(column, f"{joined.owner(body)}/{body}") for _, beside in found.values() for body in beside]
+        pairs += [
+            (column, joined.in_world(body))
+            for agent, (_, beside) in found.items()
+            for body in beside
+            if joined.owner(body) == agent
+        ]
     _exclude(spec, pairs)
 
 
