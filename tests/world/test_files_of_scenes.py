@@ -99,6 +99,17 @@ def test_of_two_arms_the_tool_says_which_is_meant(tmp_path: Path) -> None:
     assert "a_left_slide" in changes_of(found.mjcf)[0]
 
 
+def test_a_key_frame_of_two_arms_gives_the_home_of_each(tmp_path: Path) -> None:
+    postures = {"a": "0.1 .2 1.6 1.3416 0 .04 .04", "b": "-.1 .2 1.6 1.3416 0 .04 .04"}
+    key = (
+        f'<keyframe><key name="home" qpos="{postures["a"]} {postures["b"]}" ctrl="{" ".join(["0"] * 12)}"/></keyframe>'
+    )
+    text = two_arms().replace("</mujoco>", f"{key}</mujoco>")
+    for arm, turn in (("a", 0.1), ("b", -0.1)):
+        found = robot(tmp_path, text, ArmModel(tool=f"{arm}_hand"))
+        assert found.home == pytest.approx((turn, 0.2, 1.6, 1.3416, 0.0))
+
+
 def test_the_palm_as_a_tool_only_says_which_hand_is_meant(tmp_path: Path) -> None:
     found, stated = robot(tmp_path, MJCF), robot(tmp_path, MJCF, ArmModel(tool="hand"))
     places = [np.array(prepared_robot(one.mjcf).site(one.tool_site).pos) for one in (found, stated)]  # pyright: ignore[reportOptionalMemberAccess]

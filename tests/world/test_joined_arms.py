@@ -38,8 +38,9 @@ def two_arms() -> str:
     torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.1, 0.2], pos=[-0.62, 0.35, 0.2])
     for prefix, aside in (("l_", 0.25), ("r_", -0.25)):
         both.attach(mujoco.MjSpec.from_string(MJCF), prefix=prefix, frame=torso.add_frame(pos=[0.0, aside, 0.0]))
-    both.compile()
-    return str(both.to_xml())
+    model = both.compile()
+    key = f'<keyframe><key name="rest" qpos="{" ".join(["0"] * model.nq)}"/></keyframe>'
+    return str(both.to_xml()).replace("</mujoco>", f"{key}</mujoco>")
 
 
 def begun(folder: Path, tools: tuple[str, str] = ("l_hand", "r_hand"), aside: float = 0.0, **calls: str) -> Execution:

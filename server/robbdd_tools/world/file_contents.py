@@ -113,8 +113,16 @@ def put_at_origin(spec: Any, name: str) -> None:
 
 
 def fix_joints(spec: Any, source: ModelSource, names: Iterable[str]) -> None:
-    """Remove joints; their bodies stay where the file has them. What drives or measures them is removed, too."""
+    """Remove joints; their bodies stay where the file has them. What drives or measures them is removed, too.
+
+    All joints of the description are rotating or sliding ones. Key frames keep the positions of the others.
+    """
     unwanted = frozenset(names)
+    if spec.keys:
+        model = spec.copy().compile()
+        kept = [number for number in range(model.njnt) if str(model.joint(number).name) not in unwanted]
+        for number, key in enumerate(spec.keys):
+            key.qpos, key.qvel, key.act, key.ctrl = model.key_qpos[number][kept], [], [], []
     for equality in list(spec.equalities):
         if equality.type == mujoco.mjtEq.mjEQ_JOINT and {equality.name1, equality.name2} & unwanted:
             spec.delete(equality)

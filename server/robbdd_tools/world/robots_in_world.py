@@ -123,7 +123,9 @@ def _add_column(spec: Any, name: str, base: Pose, touches: int) -> None:
 
 
 def attach(spec: Any, child: Any, prefix: str, frame: Any) -> None:
-    """Add a model. Where options and sizes of the model's file differ, the world keeps its own."""
+    """Add a model without its key frames. Where options and sizes of its file differ, the world keeps its own."""
+    for key in list(child.keys):
+        child.delete(key)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Attach conflict")
         spec.attach(child, prefix=prefix, frame=frame)
