@@ -56,8 +56,9 @@ def test_an_arm_from_a_urdf_file_gets_servos_and_picks_and_places(tmp_path: Path
     [
         (
             replace(ARM, tool="tip"),
-            "cell.scenex:3:7: five.xml has no site or body 'tip' for the tool; it has the sites tcp",
+            r"cell.scenex:3:7: five.xml has no site or body 'tip' for the tool; did you mean 'tcp'\?",
         ),
+        (replace(ARM, tool="x"), "five.xml has no site or body 'x' for the tool; it has the sites tcp and the bodies "),
         (
             replace(ARM, actuator="hand"),
             "the gripper of five.xml has no actuator or joint 'hand': the file has the actuators yaw_servo,",
