@@ -48,7 +48,7 @@ def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) ->
     """Write the requested pictures; return the exit code."""
     try:
         from robbdd_tools.agent.video import NoVideo
-        from robbdd_tools.world.picture import NoPicture
+        from robbdd_tools.world.picture import NoPicture, require_graphics
     except Exception as error:  # the engine selects its back end on import; each fails with its own exception type
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
@@ -61,6 +61,7 @@ def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) ->
             pictures = (_moments if what == MOMENTS else _videos)(folder, manifest, output)
         else:
             pictures = _scene(manifest, int(what), output)
+        require_graphics()
         for picture in pictures:
             print(picture, flush=True)
     except (SceneError, NoVideo) as error:

@@ -27,12 +27,14 @@ NAME = "view:arm"
 def show(arm: str, output: str) -> int:
     """Print the report on an arm and write its picture; return the exit code."""
     try:
-        from robbdd_tools.world.picture import NoPicture
+        from robbdd_tools.world.picture import NoPicture, require_graphics
     except Exception as error:  # the engine selects its back end on import; each fails with its own exception type
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
     source = source_of(arm)
     try:
+        if output != "-":
+            require_graphics()
         simulation = _alone(source)
         _print_report(simulation, source)
         if output != "-":

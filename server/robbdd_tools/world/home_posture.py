@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +28,9 @@ SEEDS = 40
 ROUNDS = 80
 CLOSE = 1e-3
 """A posture is accepted if its pose error is below this (m and rad)."""
+PROGRESS, PATIENCE = 0.98, 16
+"""A search from one posture ends if so many steps in a row do not bring its error below this share of the smallest."""
+DAMPING = 1e-4 * np.eye(6)
 DISTANCES, HEIGHTS = (0.55, 0.45, 0.65, 0.35), (0.25, 0.35, 0.15, 0.08, 0.03)
 """Places of the tool: shares of the reach ahead of the base, and heights (m) above it, low ones for desktop arms."""
 BELOW = (-0.30, -0.45, -0.60, -0.80, -0.15)
@@ -223,26 +227,20 @@ class _Search:
 
         Any rotation about the vertical will do, unless the direction (3,) of the tool's y axis is given.
         """
-        posture = start
+        posture, nearest, since = start, np.inf, 0
         for _ in range(ROUNDS):
             place, turn = self._forward(posture)
-            tilt = np.cross(turn[:, 2], [0.0, 0.0, -1.0])
-            if turn[2, 2] > 0.0:
-                length = float(np.linalg.norm(tilt))
-                around: FloatArray = tilt / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
-                tilt = around * (np.pi - np.arcsin(min(1.0, length)))
-            if across is not None:
-                present = turn[:, 1]
-                left = np.arctan2(np.cross(present, across)[2], present @ across)
-                tilt = tilt + np.array([0.0, 0.0, left])
-            gap = np.concatenate([goal - place, tilt])
+            gap = np.concatenate([goal - place, _tilt(turn, across)])
             if np.abs(gap).max() < CLOSE:
                 return posture
+            error = float(np.linalg.norm(gap))
+            nearest, since = (error, 0) if error < PROGRESS * nearest else (nearest, since + 1)
+            if since == PATIENCE:
+                return None
             jacobian = self._jacobian()
-            damped = jacobian @ jacobian.T + 1e-4 * np.eye(6)
-            step = jacobian.T @ np.linalg.solve(damped, gap)
+            step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + DAMPING, gap)
             step = step / max(1.0, float(np.abs(step).max()) / 0.3)
-            posture = np.clip(posture + step, self._low, self._high)
+            posture = np.minimum(np.maximum(posture + step, self._low), self._high)
         return None
 
     def _is_clear_at(self, posture: FloatArray) -> bool:
@@ -271,3 +269,20 @@ class _Search:
         while body:
             yield body
             body = int(self._model.body_parentid[body])
+
+
+def _tilt(turn: FloatArray, across: FloatArray | None) -> FloatArray:
+    """Return the rotation vector (3,) after which the z axis of a tool with the rotation (3, 3) points down.
+
+    With ``across`` (3,), horizontal, it also turns the y axis there, about the vertical.
+    """
+    x, y = float(turn[0, 2]), float(turn[1, 2])
+    tilt = [-y, x, 0.0]
+    if turn[2, 2] > 0.0:
+        length = math.hypot(x, y)
+        angle = math.pi - math.asin(min(1.0, length))
+        tilt = [-y / length * angle, x / length * angle, 0.0] if length > 1e-6 else [angle, 0.0, 0.0]
+    if across is not None:
+        sine = float(turn[0, 1] * across[1] - turn[1, 1] * across[0])
+        tilt[2] = math.atan2(sine, float(turn[:, 1] @ across))
+    return np.array(tilt)

@@ -43,6 +43,14 @@ class NoPicture(Exception):
     """No graphics back end works; the message lists those tried."""
 
 
+def require_graphics() -> None:
+    """Raise ``NoPicture`` if the chosen back end cannot render, which is known in less time than a world takes."""
+    try:
+        mujoco.Renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 8, 8).close()
+    except Exception as error:  # back ends raise exceptions of their own, import errors included
+        raise NoPicture(f"{type(error).__name__}: {error}") from error
+
+
 class Camera:
     """Renders a simulation: the whole scene from the side of the table, or one object in close-up.
 

@@ -22,6 +22,7 @@ from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import load, path_of, velocity_limits
 from robbdd_tools.world.model_meshes import whole_meshes
 from robbdd_tools.world.robot_files import robot_from
+from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.robots_in_world import COLUMN
 from robbdd_tools.world.srdf_semantics import file_of
 from robbdd_tools.world.urdf_files import impossible_inertias
@@ -196,19 +197,27 @@ def _semantic_description(source: ModelSource) -> Iterator[str]:
 
 
 def _origin_of_home(simulation: Simulation, name: str, source: ModelSource | None) -> str:
-    model, robot = simulation.model, simulation.robots[name]
+    robot = simulation.robots[name].model
     if source is None:
         return "of the catalog"
-    homes: Any = model.key_qpos[:, robot.joints]
-    key = next((key for key in range(model.nkey) if np.allclose(homes[key], robot.model.home, atol=1e-4)), None)
+    key = _key_frame_of_home(robot)
     srdf = file_of(source)
-    own = dict(zip(robot.model.joints, robot.model.home, strict=True))
+    own = dict(zip(robot.joints, robot.home, strict=True))
     for state in srdf.states if srdf is not None and key is None else ():
         if all(abs(state.positions.get(joint, np.inf) - value) < SAME for joint, value in own.items()):
             return f"state '{state.name}' of the SRDF file"
     if key is None:
         return "found by a search: the tool points down, the arm reaches far"
-    return f"key frame '{str(model.key(key).name).rpartition('/')[2]}' of the file"
+    return f"key frame '{key}' of the file"
+
+
+def _key_frame_of_home(robot: RobotModel) -> str | None:
+    """Return the name of the key frame in the robot's file that gives its home; the world has no key frames."""
+    model = load_robot(robot).compile()
+    places = [int(model.joint(joint).qposadr[0]) for joint in robot.joints]
+    homes: Any = model.key_qpos[:, places]
+    same = (key for key in range(model.nkey) if np.allclose(homes[key], robot.home, atol=1e-4))
+    return next((str(model.key(key).name) for key in same), None)
 
 
 def _tool(simulation: Simulation, name: str) -> str:
