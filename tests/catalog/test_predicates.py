@@ -112,6 +112,8 @@ def test_a_moment_without_contact_is_no_drop() -> None:
         # Handed back, and dropped by the giver.
         ([1, 0, 1, 1, 0], [0, 1, 1, 0, 0], True),
         ([1, 1, 0, 0, 0], None, True),
+        # Held by neither.
+        ([0, 0, 0, 0, 0], [0, 0, 0, 0, 0], True),
     ],
 )
 def test_what_another_agent_has_taken_over_is_dropped_by_neither_or_by_it(

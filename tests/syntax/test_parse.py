@@ -127,6 +127,7 @@ def test_a_fault_names_its_place_and_what_was_expected(text: str, place: str, wo
         ("scenex", "scene: <cell>", "'scene' belongs inside 'scene inst … { … }': move it there"),
         ("scenex", "body room { }", "'body' belongs inside 'ktree … { … }' or 'kgraph … { … }': move it there"),
         ("scenex", "variant: <x>", "'variant' belongs inside 'Scenario Exec … { … }' of a .bddx file: move it there"),
+        ("scene", "correct for: x", "'correct' belongs inside 'ws set … { … }': move it there"),
         ("scene", "object cube", "'object' belongs inside 'obj set … { … }': move it there"),
         ("bdd", "Given: x", "'Given' belongs inside 'Scenario Template … { … }' or 'Scenario … { … }': move it there"),
         ("bdd", "Behaviour (ns=t) b { }", "'Behaviour' belongs inside 'Scenario Template … { … }': move it there"),

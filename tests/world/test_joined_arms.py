@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,27 +31,34 @@ LEFT, RIGHT = "env:left", "env:right"
 TORSO = "left+right"
 
 
-def two_arms() -> str:
-    """Return a file with a torso that carries two arms, 0.25 m beside its middle, and a post behind the left one."""
+def two_arms(beside: float) -> str:
+    """Return a file with a torso that carries two arms beside its middle (m), and a post behind the left one."""
     both = mujoco.MjSpec()
     torso = both.worldbody.add_body(name="torso")
     torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.05, 0.3, 0.02], pos=[-0.1, 0.0, 0.02])
     torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.1, 0.2], pos=[-0.62, 0.35, 0.2])
-    for prefix, aside in (("l_", 0.25), ("r_", -0.25)):
+    for prefix, aside in (("l_", beside), ("r_", -beside)):
         both.attach(mujoco.MjSpec.from_string(MJCF), prefix=prefix, frame=torso.add_frame(pos=[0.0, aside, 0.0]))
     model = both.compile()
     key = f'<keyframe><key name="rest" qpos="{" ".join(["0"] * model.nq)}"/></keyframe>'
-    return str(both.to_xml()).replace("</mujoco>", f"{key}</mujoco>")
+    apart = '<contact><exclude body1="r_hand" body2="l_hand"/></contact>'
+    return str(both.to_xml()).replace("</mujoco>", f"{apart}{key}</mujoco>")
 
 
-def begun(folder: Path, tools: tuple[str, str] = ("l_hand", "r_hand"), aside: float = 0.0, **calls: str) -> Execution:
+def begun(
+    folder: Path,
+    tools: tuple[str, str] = ("l_hand", "r_hand"),
+    aside: float = 0.0,
+    beside: float = 0.25,
+    **calls: str,
+) -> Execution:
     """Return an execution with two agents of one file; the second one's base is ``aside`` (m) to the right."""
     elements = tuple(
         Realisation(
             name,
             (
                 replace(
-                    source(folder, two_arms(), ArmModel(tool=tool)),
+                    source(folder, two_arms(beside), ArmModel(tool=tool)),
                     iri=f"x:{tool}",
                     bodies=((f"x:g.{place}", "torso"),),
                 ),
@@ -86,6 +94,21 @@ def test_the_arms_have_one_torso_and_start_apart(tmp_path: Path) -> None:
     assert [tool[1] for tool in tools] == pytest.approx([0.25, -0.25], abs=0.02)
 
 
+def excluded(model: Any) -> set[frozenset[str]]:
+    """Return the pairs of bodies whose contacts the engine ignores."""
+    pairs = ((int(signature) >> 16, int(signature) & 0xFFFF) for signature in model.exclude_signature)
+    return {frozenset(str(model.body(body).name) for body in pair) for pair in pairs}
+
+
+def test_contacts_are_ignored_where_the_file_says_and_between_each_shoulder_and_what_carries_it(tmp_path: Path) -> None:
+    found = excluded(begun(tmp_path).simulation.model)
+    assert {frozenset((f"{TORSO}/torso", f"{arm}_column")) for arm in (f"{LEFT}/l", f"{RIGHT}/r")} <= found
+    between_arms = {pair for pair in found if {name.partition("/")[0] for name in pair} == {LEFT, RIGHT}}
+    assert between_arms == {frozenset((f"{LEFT}/l_hand", f"{RIGHT}/r_hand"))}
+    of_torso = {name for pair in found if any(name.startswith(TORSO) for name in pair) for name in pair}
+    assert not any("hand" in name or "wrist" in name for name in of_torso), of_torso
+
+
 def test_each_arm_parks_on_its_own_side(tmp_path: Path) -> None:
     simulation = begun(tmp_path).simulation
     for name, side in ((LEFT, 1.0), (RIGHT, -1.0)):
@@ -93,6 +116,16 @@ def test_each_arm_parks_on_its_own_side(tmp_path: Path) -> None:
         assert pose is not None
         assert side * frame_of(pose)[0][1] > 0.2
     assert [arm_of(robot.model).aside for robot in simulation.robots.values()] == pytest.approx([0.25, -0.25])
+
+
+def test_an_arm_parks_away_from_the_others_shoulder_where_both_sides_are_free(tmp_path: Path) -> None:
+    simulation = begun(tmp_path, beside=0.15).simulation
+    left, right = simulation.robots.values()
+    simulation.data.qpos[left.joints[0]] = 2.5  # Turned away, so that the right arm could park on either side.
+    mujoco.mj_forward(simulation.model, simulation.data)
+    pose = parking_pose(simulation, right)
+    assert pose is not None
+    assert frame_of(pose)[0][1] < -0.5
 
 
 def test_the_same_arm_twice_overlaps(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.protocol.specs import SceneSpec
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.free_places import Field, Size, Taken, draw_place
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, footprint, mounts
 from robbdd_tools.world.scene import PEDESTAL, cast_scene
 from world.worlds import BALL, BENCH_WS, BIN, BIN_WS, CUBE, OTHER_BIN, SCENE
@@ -110,6 +111,15 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
 def test_a_scene_that_cannot_be_is_explained(scene: SceneSpec, message: str) -> None:
     with pytest.raises(SceneError, match=message):
         places(scene)
+
+
+def test_a_free_place_keeps_the_gap_between_the_circles_of_objects() -> None:
+    field = Field((0.5, 0.0), (0.2, 0.2), 0.0, 0.0, 0.03, None, Pose((0.0, 0.0, 0.0)))
+    other = Taken("env:other", 0.5, 0.0, 0.05)
+    rng = np.random.default_rng(1)
+    places = [draw_place("env:x", Size(0.04, 0.02), [field], [other], [], rng)[0].position for _ in range(200)]
+    nearest = min(hypot(x - other.x, y - other.y) for x, y, _ in places)
+    assert 0.05 + 0.04 + 0.03 <= nearest < 0.05 + 0.04 + 0.03 + 0.02
 
 
 def test_places_that_overlap_are_drawn_again_and_counted() -> None:

@@ -30,7 +30,7 @@ def misplaced_part(language: str, text: str, offset: int) -> str | None:
             if begun is not None:
                 return f"'{word[0]}' does not begin a declaration here: write '{begun}'"
             continue
-        ended = next((owner for owner in owners if offset and re.match(rf"{owner}\b", text)), None)
+        ended = next((owner for owner in owners if re.match(rf"{owner}\b", text)), None)
         if ended is not None:
             return f"'{word[0]}' belongs inside the '{ended}', which ends before it: check the braces"
         shown = " or ".join(f"'{owner} … {{ … }}'" for owner in owners[:2])

@@ -21,7 +21,7 @@ _GRAPH, _ROOM, _ORIGIN = "poses", "room", "origin"
 def first_pose(snapshot: Snapshot, uri: str, start: int) -> Iterator[Fix]:
     """Yield the fix that places an element whose name begins at an offset of a ``.scenex``, if it can be made.
 
-    The element has one model, which no body is mapped to yet.
+    The element has one model.
     """
     file = snapshot.file(uri)
     for placed in file.declarations if file is not None else ():
@@ -34,7 +34,7 @@ def first_pose(snapshot: Snapshot, uri: str, start: int) -> Iterator[Fix]:
 def _placing(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, element: tree.Modelled) -> Iterator[Fix]:
     scene = placed.declaration.tree
     models = [one for one in element.entries if isinstance(one, tree.Model)]
-    if len(models) != 1 or models[0].mappings or not isinstance(scene, tree.SceneInstance):
+    if len(models) != 1 or not isinstance(scene, tree.SceneInstance):
         return
     document = snapshot.document(uri)
     text, offset = document.text, placed.offset
