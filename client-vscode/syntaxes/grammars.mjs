@@ -234,7 +234,7 @@ const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
     ...["dimension", "lower", "upper", "mean", "covariance", "std-dev", "scene", "wrt", "xyz", "orientation", "xyzw"],
     ...["angles", "axes", "x", "y", "z", "root", "tip", "anchor", "parent", "child", "axis", "limits"],
     ...["offset", "polarity", "rate", "module", "attr", "frame", "mass", "position", "velocity", "effort"],
-    ...["tool", "actuator", "open", "close", "closed", "pads", "stroke", "home", "joint", "size"],
+    ...["tool", "actuator", "open", "close", "closed", "pads", "stroke", "home", "joint", "size", "on"],
   ),
   { match: String.raw`(?<![\p{L}\p{N}_-])(?:sys\s+path|ros\s+pkg|path)(?=\s*=)`, name: `${PROPERTY}.robbdd` },
   phrases(`${WORD}.distribution`, "uniform-rotation", "uniform", "normal", "sample"),

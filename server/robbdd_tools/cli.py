@@ -160,6 +160,8 @@ def argument_parser() -> argparse.ArgumentParser:
     view.add_argument("path", metavar="FILE", nargs="?", type=Path)
     text = "show this arm alone, and what was found in its MJCF or URDF file; or an arm of the catalog"
     view.add_argument("--robot", metavar="ARM", help=text)
+    view.add_argument("--gripper", type=Path, metavar="FILE", help="file of a gripper to fix to the arm; needs --on")
+    view.add_argument("--on", metavar="NAME", help="body or site of the arm's file that carries the gripper")
     view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
     view.add_argument("--seed", type=seed, default=None, help="seed of all random choices (default: 1)")
     allow_scenex(view)
@@ -315,7 +317,9 @@ def _view(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.view import view, view_robot
 
     if options.robot is not None:
-        return view_robot(options.robot, options.output)
+        return view_robot(options.robot, options.output, options.gripper, options.on)
+    if options.gripper is not None or options.on is not None:
+        return fail("--gripper and --on need an arm: --robot ARM")
     if options.path is None:
         return fail("name a model (FILE) or an arm (--robot ARM)")
     return view(options.path, options.scenario, options.seed, options.output, options.scenex or ())

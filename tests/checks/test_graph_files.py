@@ -123,7 +123,7 @@ def test_files_and_modules_are_looked_for_next_to_the_graph(tmp_path: Path) -> N
     scenex = """import "lab.scene"
 ns sim = 'https://example.org/sim/'
 scene inst (ns=sim) lab_sim { scene: <bench_scene>
-    obj <parts.cube_a> { model a_model as mjcf { sys path = "a.xml" } }
+    obj <parts.cube_a> { model a_model as mjcf { sys path = "a.xml" gripper { sys path = "b.xml" on: "hand" } } }
     obj <parts.cube_b> { model b_model as mjcf { py { module: shapes, attr: Shape } } }
 }
 """
@@ -149,11 +149,14 @@ Scenario Exec (ns=x) run { variant: <fetching.bench-to-tray> scene inst: <lab_si
     assert messages() == [
         "'sim:lab_sim.a_model': the model file 'a.xml' is not on this machine: put it there, or change the path, "
         "before a run with it",
+        "'sim:lab_sim.a_model': the model file 'b.xml' is not on this machine: put it there, or change the path, "
+        "before a run with it",
         "'sim:lab_sim.b_model': there is no module 'shapes': put shapes.py next to this file",
         f"'x:near': {mine}",
         f"'x:own': {mine}",
     ]
     (tmp_path / "a.xml").touch()
+    (tmp_path / "b.xml").touch()
     (tmp_path / "shapes.py").write_text("class Shape: ...\n", encoding="utf-8")
     (tmp_path / "mine.py").write_text("class Pick: ...\n", encoding="utf-8")
     assert messages() == ["'x:near': the module 'mine' has no 'near'"]

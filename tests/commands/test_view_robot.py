@@ -16,6 +16,7 @@ from robbdd_tools.world.robot_report import as_stated, stated
 from world import strangers
 from world.arms import MJCF, URDF
 from world.hollow import write_tote
+from world.test_mounted_gripper import BARE, FINGERS, GRIPPER
 
 
 def write(folder: Path, text: str) -> Path:
@@ -114,6 +115,45 @@ def test_a_gripper_that_several_actuators_close_is_not_stated(tmp_path: Path, te
     lines = list(stated(as_stated(robot_from(source, NAME), NAME, source), source, joints_slide=False))
     assert ("    gripper {" in lines) is has_gripper
     assert lines[0] == "model arm_model as mjcf {"
+
+
+def test_an_arm_is_shown_with_a_gripper_from_another_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arm, gripper = write(tmp_path, BARE), tmp_path / "fingers.xml"
+    gripper.write_text(GRIPPER, encoding="utf-8")
+    command = ["view", "--robot", str(arm), "-o", str(tmp_path / "arm.png"), "--gripper", str(gripper)]
+    main([*command, "--on", "flange"])
+    said = capsys.readouterr().out
+    assert f"gripper from {gripper}, fixed to 'flange'" in said
+    assert "gripper: actuator 'roll_servo', open at 0.04, closed at -0.002, 80 mm wide" in said
+    assert "gripping faces: left_pad | right_pad" in said
+    block = said[said.index("        gripper {") : said.index("        home:")]
+    assert [line.strip() for line in block.splitlines()] == [
+        "gripper {",
+        f"sys path = '{gripper}'",
+        'on: "flange"',
+        'actuator: "roll_servo"',
+        "open: 0.04",
+        "close: -0.002",
+        'pads: "left_pad", "right_pad"',
+        "stroke: 80 mm",
+        "}",
+    ]
+    assert main([*command, "--on", "flang"]) == 2
+    assert "arm.xml has no site or body 'flang' for the gripper" in capsys.readouterr().err
+    assert main(command) == 2
+    assert "a gripper needs both --gripper FILE and --on NAME" in capsys.readouterr().err
+    assert main(["view", str(tmp_path / "cell.bdd"), "--on", "flange"]) == 2
+    assert "--gripper and --on need an arm: --robot ARM" in capsys.readouterr().err
+
+
+def test_remarks_on_the_file_of_a_gripper_are_those_on_an_arm(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arm, gripper = write(tmp_path, BARE), tmp_path / "fingers.urdf"
+    gripper.write_text(FINGERS.replace('ixx="0.01"', 'ixx="0.1"', 1), encoding="utf-8")
+    main(["view", "--robot", str(arm), "-o", str(tmp_path / "a.png"), "--gripper", str(gripper), "--on", "flange"])
+    said = capsys.readouterr().out
+    assert "inertias that no body can have, replaced by the mean of their principal moments: hand" in said
 
 
 def test_links_that_collide_as_they_look_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -106,6 +106,11 @@ def test_a_model_file_is_changed_to_one_of_a_like_name_or_made(tmp_path: Path) -
     changed = text[: edit.span.start] + edit.text + text[edit.span.end :]
     assert changed == text.replace("bench.xml", "models/bench2.xml")
     assert made.new_file is not None
+    gripper = text.replace("'bench.xml'", "'models/bench2.xml' gripper { sys path = 'am.xml' on: 'x' }")
+    project.open(uri, 2, gripper)
+    missing = next(entry for entry in fast_diagnostics(project.snapshot(), uri) if "am.xml" in entry.message)
+    (alike,) = fixes_on_demand(project.snapshot(), uri, missing)
+    assert alike.title == "Change to 'arm.xml'"
     (tmp_path / "bench.xml").write_text(made.new_file.text, encoding="utf-8")
     assert made.new_file.uri == path_to_uri(tmp_path / "bench.xml")
     for after in (changed, text):

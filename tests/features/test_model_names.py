@@ -11,6 +11,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.outside_files import outside_uris
 from robbdd_tools.features.outside_names import outside_name_at, outside_references
 from robbdd_tools.names.project import Project, Snapshot
 
@@ -86,6 +87,69 @@ def test_a_body_that_is_mapped_without_a_name_has_its_own_name_in_the_file(tmp_p
     (edit,) = found.fixes[1].edits
     assert (found.fixes[1].title, edit.text) == ("Add 'to \"base\"'", ' to "base"')
     assert text[: edit.span.start].endswith("map body <poses.foot>")
+
+
+MOUNTED = edited('gripper { actuator: "close"', 'gripper { sys path = \'hand.xml\' on: "hand" actuator: "close"')
+HAND = '<mujoco><worldbody><body name="palm"><site name="tip"/><geom name="pad_ä"/></body></worldbody></mujoco>'
+
+
+def test_names_of_a_mounted_gripper_are_those_in_its_file(tmp_path: Path) -> None:
+    (tmp_path / "hand.xml").write_text(HAND, encoding="utf-8")
+    text = MOUNTED.replace('on: "hand"', 'on: "palm"').replace('"hand" }', '"hand2" }')
+    assert [one.message.partition(";")[0] for one in findings(tmp_path, text)] == [
+        "the model's file has no site or body 'palm'",
+        "the model's file has no actuator or joint 'close'",
+        "the model's file has no geom or body 'hand2'",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wanted"),
+    [
+        ('on: "hand"', 'on: "$0', ["tip", "hand", "base", "elbow"]),
+        ('"tip"', '"$0"', ["tip", "palm"]),
+        ('"pad_ä", "hand"', '"$0"', ["pad_ä", "palm"]),
+    ],
+)
+def test_names_of_a_mounted_gripper_are_completed(tmp_path: Path, old: str, new: str, wanted: list[str]) -> None:
+    (tmp_path / "hand.xml").write_text(HAND, encoding="utf-8")
+    assert [one.label for one in complete(*opened(tmp_path, edited(old, new, MOUNTED)))] == wanted
+
+
+@pytest.mark.parametrize(
+    ("pose", "message"),
+    [
+        ("offset: (0, 5) mm", "an offset needs 3 numbers, not 2"),
+        ("orientation: quat { xyzw: (0, 0, 1) }", "this is not a rotation: a quaternion has 4 numbers"),
+        (
+            "orientation: quat { sample <spin> }",
+            "the orientation of a gripper cannot be drawn at random: write a rotation",
+        ),
+    ],
+)
+def test_an_impossible_pose_of_a_mounted_gripper_is_reported(tmp_path: Path, pose: str, message: str) -> None:
+    snapshot, uri, _ = opened(tmp_path, edited('on: "hand"', f'on: "hand" {pose}', MOUNTED))
+    (found,) = (one for one in fast_diagnostics(snapshot, uri) if one.code == "pose")
+    assert found.message.startswith(message)
+
+
+def test_the_file_of_a_mounted_gripper_is_opened_and_described(tmp_path: Path) -> None:
+    (tmp_path / "hand.xml").write_text(HAND, encoding="utf-8")
+    snapshot, uri, _ = opened(tmp_path, MOUNTED)
+    place = (HEAD + MOUNTED).index("hand.xml")
+    named = outside_name_at(snapshot, uri, place)
+    assert named is not None
+    definition = named.definition()
+    assert definition is not None
+    assert definition.uri == path_to_uri(tmp_path / "hand.xml")
+    assert path_to_uri(tmp_path / "hand.xml") in outside_uris(snapshot, uri)
+
+
+def test_the_missing_file_of_a_gripper_is_reported_once_at_its_path(tmp_path: Path) -> None:
+    (found,) = findings(tmp_path, MOUNTED)
+    assert found.message.startswith("the model file 'hand.xml' is not on this machine")
+    text = HEAD + MOUNTED
+    assert text[found.span.start : found.span.end] == "'hand.xml'"
 
 
 def test_names_in_a_urdf_file_are_links_and_joints(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from graph.test_executions import BDDX
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.base.plain import from_plain
-from robbdd_tools.catalog.executable import ArmModel, Law, OpeningModel, SceneInstance
+from robbdd_tools.catalog.executable import ArmModel, Law, MountedGripper, OpeningModel, SceneInstance
 from robbdd_tools.graph.places import placed_model
 from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
 from robbdd_tools.graph.read.acceptance import read_model
@@ -89,6 +90,29 @@ def test_models_belong_to_the_elements_and_to_each_of_a_set() -> None:
 def test_an_arm_has_its_tool_gripper_and_limits_in_si_units() -> None:
     arms = [model.arm for one in instance().elements for model in one.models if model.arm is not None]
     assert arms == [ArmModel("tcp", "grip", 0.04, 0.0, ("a", "b"), 0.08, (0.0, 1.5), (1.0, 2.0))]
+
+
+@pytest.mark.parametrize(
+    ("written", "mounted"),
+    [
+        ("sys path = 'hand.xml' on: 'flange'", MountedGripper("file", "hand.xml", "flange")),
+        (
+            "ros pkg = 'hands', path = 'hand.urdf' on: 'tool0' offset: (0, 1, 2) cm "
+            "orientation: euler { angles: (0, 0, 180) unit: deg }",
+            MountedGripper("ros", "hand.urdf", "tool0", "hands", (0.0, 0.01, 0.02), (0.0, 0.0, 0.0, 1.0)),
+        ),
+    ],
+)
+def test_a_gripper_from_a_file_of_its_own_is_fixed_to_the_arm(written: str, mounted: MountedGripper) -> None:
+    text = SCENEX.replace("ORIENTATION", TURN).replace('{ actuator: "grip"', f'{{ {written} actuator: "grip"')
+    scene = instance_of(text)
+    (arm,) = [model.arm for one in scene.elements for model in one.models if model.arm is not None]
+    found = arm.mounted
+    assert found is not None
+    assert (arm.actuator, found.position) == ("grip", pytest.approx(mounted.position))
+    assert found.rotation == pytest.approx(mounted.rotation)
+    assert replace(found, position=mounted.position, rotation=mounted.rotation) == mounted
+    assert [(one.kind, one.name) for one in scene.sources][-1] == (mounted.kind, mounted.name)
 
 
 def test_a_thing_that_opens_has_its_joint_and_positions_with_units() -> None:

@@ -12,6 +12,7 @@ from robbdd_tools.cli import main
 from robbdd_tools.run.store import store_beside
 from robbdd_tools.run.used_files import changed
 from world.arms import URDF
+from world.test_mounted_gripper import BARE, GRIPPER
 
 
 @pytest.fixture
@@ -52,6 +53,21 @@ def test_a_replay_names_the_files_that_were_changed(project: Path, capsys: pytes
     assert "1 of 1 traces are the same" in capsys.readouterr().out
     (project / "five.xml").unlink()
     assert [path.name for path in changed(known, run.folder)] == ["five.xml", "helper.py", "extra.xml"]
+
+
+@pytest.mark.physics
+def test_the_file_of_a_mounted_gripper_counts(project: Path) -> None:
+    (project / "five.xml").write_text(BARE, encoding="utf-8")
+    (project / "fingers.xml").write_text(GRIPPER, encoding="utf-8")
+    (scene,) = project.glob("*.scenex")
+    text = scene.read_text(encoding="utf-8")
+    start = text.index("            tool:")
+    end = text.index("}", text.index("stroke:")) + 1
+    mounted = "gripper { sys path = 'fingers.xml' on: \"flange\" }"
+    scene.write_text(text[:start] + mounted + text[end:], encoding="utf-8")
+    assert main(["run", "tidy.bddx", "--scenario", "by-our-code", "--first", "1"]) == 0
+    (run,) = store_beside(project / "tidy.bddx").runs()
+    assert {"five.xml", "fingers.xml"} <= {Path(name).name for name in run.record().files}
 
 
 @pytest.mark.physics

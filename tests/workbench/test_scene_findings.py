@@ -54,6 +54,14 @@ def test_overlaps_and_unusable_models_are_reported_with_their_places(cell: Path)
     assert overlap == "65:10: warning: 'bin' and 'table' overlap by 20 mm: nothing may overlap at the start [overlap]"
 
 
+def test_data_about_an_arm_of_the_catalog_are_refused_instead_of_ignored(cell: Path) -> None:
+    rewrite(cell, ("sys path = 'five.xml'", 'catalog "franka-panda"'))
+    assert found(cell.with_name("tidy.bddx")) == [
+        "67:15: warning: 'franka-panda' of the catalog has its own tool, gripper, home and speeds: remove yours, or"
+        " name a file [unusable-model]"
+    ]
+
+
 def test_a_fixed_object_from_a_file_without_a_pose_is_reported(cell: Path) -> None:
     shape = '<geom type="box" size="0.1 0.1 0.02"/>'
     for name, joint in (("fixed", ""), ("loose", "<freejoint/>")):

@@ -67,7 +67,7 @@ def _link(name: str, mass: float, shape: str = "", at: str = "0 0 0") -> str:
     return f'<link name="{name}">{body}{geometry}</link>'
 
 
-def _joint(name: str, ends: tuple[str, str], axis: str, at: str, kind: str = "revolute", high: float = 3.0) -> str:
+def joint(name: str, ends: tuple[str, str], axis: str, at: str, kind: str = "revolute", high: float = 3.0) -> str:
     parent, child = ends
     low = 0.0 if kind == "prismatic" else -high
     mimic = '<mimic joint="left_slide"/>' if name == "right_slide" else ""
@@ -89,13 +89,13 @@ URDF = "".join(
         _link("hand", 0.5, '<box size="0.04 0.12 0.03"/>', "0 0 0.015"),
         _link("left", 0.05, '<box size="0.018 0.008 0.03"/>'),
         _link("right", 0.05, '<box size="0.018 0.008 0.03"/>'),
-        _joint("yaw", ("foot", "column"), "0 0 1", "0 0 0"),
-        _joint("shoulder", ("column", "upper"), "0 1 0", "0 0 0.3", high=2),
-        _joint("elbow", ("upper", "fore"), "0 1 0", "0 0 0.45", high=2.8),
-        _joint("pitch", ("fore", "wrist"), "0 1 0", "0 0 0.45"),
-        _joint("roll", ("wrist", "hand"), "0 0 1", "0 0 0.08"),
-        _joint("left_slide", ("hand", "left"), "0 1 0", "0 0.004 0.1", "prismatic", 0.04),
-        _joint("right_slide", ("hand", "right"), "0 -1 0", "0 -0.004 0.1", "prismatic", 0.04),
+        joint("yaw", ("foot", "column"), "0 0 1", "0 0 0"),
+        joint("shoulder", ("column", "upper"), "0 1 0", "0 0 0.3", high=2),
+        joint("elbow", ("upper", "fore"), "0 1 0", "0 0 0.45", high=2.8),
+        joint("pitch", ("fore", "wrist"), "0 1 0", "0 0 0.45"),
+        joint("roll", ("wrist", "hand"), "0 0 1", "0 0 0.08"),
+        joint("left_slide", ("hand", "left"), "0 1 0", "0 0.004 0.1", "prismatic", 0.04),
+        joint("right_slide", ("hand", "right"), "0 -1 0", "0 -0.004 0.1", "prismatic", 0.04),
         _link("tcp", 0.01),
         '<joint name="tool" type="fixed"><parent link="hand"/><child link="tcp"/>'
         '<origin xyz="0 0 0.1" rpy="0 0 3.14159265"/></joint>',

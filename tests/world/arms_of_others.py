@@ -8,11 +8,13 @@ from pathlib import Path
 
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import (
+    ArmModel,
     Body,
     Friction,
     Implementation,
     Link,
     ModelSource,
+    MountedGripper,
     Origin,
     Realisation,
     SceneInstance,
@@ -30,22 +32,13 @@ NEAR = 0.15
 _MANI_SKILL = "mani_skill/assets/robots"
 _EXAMPLES = "cmeel.prefix/share/example-robot-data/robots"
 _PYBULLET, _ROBOSUITE = "pybullet_data", "robosuite/models/assets"
-_ATTACHED = """import mujoco
-
-def make():
-    arm = mujoco.MjSpec.from_file({arm!r})
-    hand = mujoco.MjSpec.from_file({hand!r})
-    arm.body("right_hand").add_frame().attach_body(hand.worldbody.first_body(), "hand-", "")
-    return arm
-"""
-"""Python code that fixes a gripper of robosuite to an arm of robosuite."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arm:
     """An arm as shipped.
 
-    - ``path``: its file in the folder, and ``hand`` that of a gripper that has to be fixed to it.
+    - ``path``: its file in the folder, and ``hand`` that of a gripper that is fixed to its ``right_hand``.
     - ``forward``: how much (m) nearer to the table than the catalog's arms its base stands.
     - ``height``: height (m) of its base above the table.
     - ``friction``: the stated coefficient between gripper and cube; 0 means that the files decide.
@@ -88,22 +81,18 @@ ARMS = (
 )
 
 
-def source_of(arm: Arm, folder: Path) -> ModelSource:
-    """Return the source of an arm. Code that composes it is written to ``folder``."""
-    if not arm.hand:
-        path = FOLDER / arm.path
-        kind = "urdf" if path.suffix == ".urdf" else "mjcf"
-        return ModelSource(f"x:{arm.name}", kind, "file", str(path), origin=Origin(str(path), 1, 1))
-    module = arm.name.replace("-", "_")
-    code = _ATTACHED.format(arm=str(FOLDER / arm.path), hand=str(FOLDER / arm.hand))
-    (folder / f"{module}.py").write_text(code, encoding="utf-8")
-    origin = Origin(str(folder / "cell.scenex"), 1, 1)
-    return ModelSource("x:arm", "mjcf", "python", f"{module}:make", origin=origin)
+def source_of(arm: Arm) -> ModelSource:
+    """Return the source of an arm."""
+    path = FOLDER / arm.path
+    kind = "urdf" if path.suffix == ".urdf" else "mjcf"
+    mounted = MountedGripper("file", str(FOLDER / arm.hand), "right_hand") if arm.hand else None
+    stated = None if mounted is None else ArmModel(mounted=mounted)
+    return ModelSource(f"x:{arm.name}", kind, "file", str(path), arm=stated, origin=Origin(str(path), 1, 1))
 
 
-def picking(arm: Arm, folder: Path, seed: int) -> Execution:
+def picking(arm: Arm, seed: int) -> Execution:
     """Return the execution in which an arm moves the cube from the table into the bin."""
-    source = replace(source_of(arm, folder), bodies=(("x:own", ""),))
+    source = replace(source_of(arm), bodies=(("x:own", ""),))
     instance = SceneInstance(
         "x:cell",
         elements=(Realisation(OWN, (source,)),),
@@ -117,9 +106,9 @@ def picking(arm: Arm, folder: Path, seed: int) -> Execution:
     return Execution(spec, [pick_place(CUBE, BIN_WS, OWN)])
 
 
-def outcome(arm: Arm, folder: Path, seed: int) -> str:
+def outcome(arm: Arm, seed: int) -> str:
     """Return ``in the bin``, or why the cube is not there."""
-    run = picking(arm, folder, seed)
+    run = picking(arm, seed)
     run.run_behaviour(0)
     (cube, _), (container, _) = run.simulation.pose(CUBE), run.simulation.pose(BIN)
     return "in the bin" if abs(cube[:2] - container[:2]).max() < NEAR else run.trace.remark

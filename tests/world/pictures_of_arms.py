@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import warnings
 from pathlib import Path
 
@@ -23,8 +22,7 @@ AZIMUTH = 128.0
 
 def draw(arm: Arm, target: Path) -> None:
     """Write the picture of an arm at home, at the table where it was tried."""
-    with tempfile.TemporaryDirectory() as folder:
-        simulation = picking(arm, Path(folder), 1).simulation
+    simulation = picking(arm, 1).simulation
     camera = Camera(simulation, SIZE)
     try:
         write_png(target, camera.take_arm(simulation.data, OWN, AZIMUTH))

@@ -18,8 +18,8 @@ PAGE = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
 @pytest.mark.filterwarnings("ignore:.*obj_decoder")
 @pytest.mark.skipif(not FOLDER.is_dir(), reason="the arms of others are not here: make arms")
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: arm.name)
-def test_an_arm_as_shipped_works_as_often_as_the_page_says(arm: Arm, tmp_path: Path) -> None:
-    outcomes = Counter(outcome(arm, tmp_path, seed) for seed in range(1, 11))
+def test_an_arm_as_shipped_works_as_often_as_the_page_says(arm: Arm) -> None:
+    outcomes = Counter(outcome(arm, seed) for seed in range(1, 11))
     assert outcomes["in the bin"] == arm.works, outcomes
 
 

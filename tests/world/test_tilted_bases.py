@@ -21,6 +21,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import centred
 from robbdd_tools.world.fixed_faults import fixed_faults
 from robbdd_tools.world.hanging_arms import is_hung
+from robbdd_tools.world.home_posture import turn_down
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.table_rise import rise_of
 from robbdd_tools.world.tilted_base import UPRIGHT, Tilt, far_from_tables, rotation_of, tilt_of, upright_part
@@ -262,3 +263,16 @@ def test_the_largest_table_says_how_high_a_cell_is() -> None:
     assert rise_of(objects, {"small": poses["small"]}.get) == pytest.approx(0.4)
     assert rise_of(objects, {"large": Pose((0.0, 0.0, -0.5))}.get) == 0.0
     assert rise_of(objects, lambda _: None) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_step_towards_a_tool_that_points_down_is_about_the_shortest_rotation(seed: int) -> None:
+    matrix, quaternion, turned = np.zeros(9), np.zeros(4), np.zeros(3)
+    drawn = np.random.default_rng(seed).normal(size=4)
+    mujoco.mju_quat2Mat(matrix, drawn / np.linalg.norm(drawn))
+    step, angle = turn_down(matrix.reshape(3, 3), None), float(np.arccos(-matrix[8]))
+    length = float(np.linalg.norm(step))
+    assert length == pytest.approx(angle if matrix[8] > 0 else np.sin(angle))
+    mujoco.mju_axisAngle2Quat(quaternion, step / length, angle)
+    mujoco.mju_rotVecQuat(turned, matrix[2::3], quaternion)
+    assert turned == pytest.approx([0.0, 0.0, -1.0], abs=1e-6)

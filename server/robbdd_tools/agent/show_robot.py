@@ -1,17 +1,19 @@
-"""Show one arm alone: ``python -m robbdd_tools.agent.show_robot ARM FILE.png``.
+"""Show one arm alone: ``python -m robbdd_tools.agent.show_robot ARM FILE.png [GRIPPER MOUNT]``.
 
-ARM is an MJCF or URDF file, or a name of the catalog. The report goes to standard output; with ``-`` as FILE.png there
-is no picture. Exit codes: 0 done; 2 the arm cannot be used or a file cannot be written; 3 no graphics back end works.
+ARM is an MJCF or URDF file, or a name of the catalog. GRIPPER is the file of a gripper, and MOUNT the body or site of
+ARM that it is fixed to. The report goes to standard output; with ``-`` as FILE.png there is no picture. Exit codes: 0
+done; 2 the arm cannot be used or a file cannot be written; 3 no graphics back end works.
 """
 
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.graphics import NO_GRAPHICS
-from robbdd_tools.catalog.executable import ModelSource, Realisation, SceneInstance
+from robbdd_tools.catalog.executable import ArmModel, ModelSource, MountedGripper, Realisation, SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.protocol.specs import SceneSpec
 from robbdd_tools.world.errors import SceneError
@@ -24,14 +26,16 @@ NAME = "view:arm"
 """Name of the agent in the displayed world."""
 
 
-def show(arm: str, output: str) -> int:
-    """Print the report on an arm and write its picture; return the exit code."""
+def show(arm: str, output: str, gripper: str = "", mount: str = "") -> int:
+    """Print the report on an arm and write its picture; return the exit code. ``gripper`` is a file, if it has one."""
     try:
         from robbdd_tools.world.picture import NoPicture, require_graphics
     except Exception as error:  # the engine selects its back end on import; each fails with its own exception type
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
     source = source_of(arm)
+    if gripper:
+        source = replace(source, arm=ArmModel(mounted=MountedGripper("file", gripper, mount)))
     try:
         if output != "-":
             require_graphics()
@@ -95,4 +99,4 @@ def _draw(simulation: Simulation, output: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(show(*sys.argv[1:3]))
+    sys.exit(show(*sys.argv[1:5]))

@@ -187,12 +187,29 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True)
+class MountedGripper:
+    """A gripper from a file of its own, fixed to an arm.
+
+    ``kind``, ``name`` and ``package`` are as in ``ModelSource``. ``mount`` is the body or site of the arm's file that
+    carries the gripper, whose origin is at ``position`` (m) and ``rotation`` (quaternion w, x, y, z) in its frame.
+    """
+
+    kind: str
+    name: str
+    mount: str
+    package: str = ""
+    position: tuple[float, ...] = (0.0, 0.0, 0.0)
+    rotation: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
 class ArmModel:
     """Data about an arm that replace data found in its model file. Names are as in the file.
 
-    Empty names, ``None`` and zeros mean that the file decides. ``open`` and ``closed`` are values of the gripper's
-    actuator. ``stroke`` (m) is the widest opening between the ``pads``, or the diameter of a suction cup, which is a
-    single pad. ``home`` (rad, m for a sliding joint) and ``velocity`` (rad/s, m/s) have one number for each joint.
+    Empty names, ``None`` and zeros mean that the file decides. Where a gripper is ``mounted``, the names of its parts
+    are those in its file. ``open`` and ``closed`` are values of the gripper's actuator. ``stroke`` (m) is the widest
+    opening between the ``pads``, or the diameter of a suction cup, which is a single pad. ``home`` (rad, m for a
+    sliding joint) and ``velocity`` (rad/s, m/s) have one number for each joint.
     """
 
     tool: str = ""
@@ -203,6 +220,7 @@ class ArmModel:
     stroke: float = 0.0
     home: tuple[float, ...] = ()
     velocity: tuple[float, ...] = ()
+    mounted: MountedGripper | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,6 +265,14 @@ class ModelSource:
     arm: ArmModel | None = None
     origin: Origin | None = None
     opening: OpeningModel | None = None
+
+    @property
+    def gripper(self) -> ModelSource | None:
+        """The file of a gripper that is mounted on this arm, without its format."""
+        mounted = None if self.arm is None else self.arm.mounted
+        if mounted is None:
+            return None
+        return ModelSource(self.iri, "", mounted.kind, mounted.name, mounted.package, origin=self.origin)
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,3 +331,9 @@ class SceneInstance:
     frictions: tuple[Friction, ...] = ()
     correct_places: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     boxes: tuple[WorkspaceBox, ...] = ()
+
+    @property
+    def sources(self) -> tuple[ModelSource, ...]:
+        """The models of the scene and of its elements, and the grippers that are mounted on them."""
+        models = (*self.models, *(model for one in self.elements for model in one.models))
+        return (*models, *(model.gripper for model in models if model.gripper is not None))

@@ -35,7 +35,7 @@ def execution_findings(site: GraphSite) -> Iterator[Diagnostic]:
         for policy in execution.policies:
             yield from _policy(site, policy)
     for instance in site.instances:
-        for source in (*instance.models, *(source for one in instance.elements for source in one.models)):
+        for source in instance.sources:
             match source.kind:
                 case "python":
                     yield from _python(site, source.iri, source.name)

@@ -38,20 +38,20 @@ def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def _faults(file: FileAnalysis, placed: PlacedDeclaration, model: tree.Model, folder: Path) -> Iterator[Diagnostic]:
+    if model.gripper is not None and model.gripper.source is not None:
+        span = model.gripper.source.path.span.shifted(placed.offset)
+        for problem in _problems(model.gripper.source, folder):
+            yield Diagnostic(file.document.uri, span, Severity.WARNING, CODE, problem)
     source = model.source
     if not isinstance(source, tree.SystemPath | tree.RosPath):
         return
     uri, span = file.document.uri, source.path.span.shifted(placed.offset)
-    problem = _missing_package(source) or missing_file(folder, _written(source, folder))
-    if problem is not None:
+    for problem in _problems(source, folder, is_read=model.kind != "usd"):
         yield Diagnostic(uri, span, Severity.WARNING, CODE, problem)
-        return
     path = model_path(folder, source)
-    if path is None or model.kind == "usd":
+    if path is None or model.kind == "usd" or not path.is_file():
         return
     parts = model_parts(path)
-    for problem in filter(None, (parts.problem, *parts.missing)):
-        yield Diagnostic(uri, span, Severity.WARNING, CODE, f"the model file cannot be used: {problem}")
     if parts.format and parts.format != model.kind:
         message = f"the model file is {_FORMATS[parts.format]}, not {_FORMATS[model.kind]}: write 'as {parts.format}'"
         kind = _kind_span(file, placed, model)
@@ -64,6 +64,18 @@ def _kind_span(file: FileAnalysis, placed: PlacedDeclaration, model: tree.Model)
     text, start = file.document.text, model.name.span.shifted(placed.offset).end
     place = text.rindex(model.kind, start, text.index("{", start))
     return Span(place, place + len(model.kind))
+
+
+def _problems(source: tree.SystemPath | tree.RosPath, folder: Path, is_read: bool = True) -> Iterator[str]:
+    """Yield why a run cannot use a model file."""
+    problem = _missing_package(source) or missing_file(folder, _written(source, folder))
+    if problem is not None:
+        yield problem
+        return
+    path = model_path(folder, source)
+    parts = model_parts(path) if path is not None and is_read else None
+    for problem in filter(None, (parts.problem, *parts.missing)) if parts is not None else ():
+        yield f"the model file cannot be used: {problem}"
 
 
 def _missing_package(source: tree.SystemPath | tree.RosPath) -> str | None:

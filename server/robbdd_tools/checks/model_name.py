@@ -37,6 +37,7 @@ MAX_NAMES = 12
 WANTED: Mapping[str, tuple[str, ...]] = {
     "map body": ("body",),
     "tool": ("site", "body"),
+    "on": ("site", "body"),
     "actuator": ("actuator", "joint"),
     "pads": ("geom", "body"),
     "joint": ("joint",),
@@ -49,11 +50,15 @@ _PLURALS = {"body": "bodies"}
 
 @dataclass(frozen=True, slots=True)
 class PartName:
-    """The name of a part in a model: the entry that names it (a key of ``WANTED``), and its text."""
+    """The name of a part in a model: the entry that names it (a key of ``WANTED``), and its text.
+
+    ``in_gripper`` says that the file of a mounted gripper has the part.
+    """
 
     model: tree.Model
     entry: str
     text: tree.Text
+    in_gripper: bool = False
 
 
 def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -63,7 +68,7 @@ def model_name(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         return
     for placed in file.of(tree.SceneInstance):
         for named in part_names(placed.declaration):
-            parts = parts_of(named.model, own.parent)
+            parts = parts_named(named, own.parent)
             if parts is None or parts.may_have(named.text.value, *ACCEPTED[named.entry]):
                 continue
             span = named.text.span.shifted(placed.offset)
@@ -110,20 +115,35 @@ def _named(model: tree.Model) -> Iterator[PartName]:
     for mapping in model.mappings:
         if mapping.target is not None and _is_body(mapping):
             yield PartName(model, "map body", mapping.target)
+    gripper = model.gripper
+    is_mounted = gripper is not None and gripper.source is not None
     if model.tool is not None:
-        yield PartName(model, "tool", model.tool)
-    if model.gripper is not None:
-        if model.gripper.actuator is not None:
-            yield PartName(model, "actuator", model.gripper.actuator)
-        yield from (PartName(model, "pads", pad) for pad in model.gripper.pads)
+        yield PartName(model, "tool", model.tool, is_mounted)
+    if gripper is not None:
+        if gripper.mount is not None:
+            yield PartName(model, "on", gripper.mount)
+        if gripper.actuator is not None:
+            yield PartName(model, "actuator", gripper.actuator, is_mounted)
+        yield from (PartName(model, "pads", pad, is_mounted) for pad in gripper.pads)
     if model.opening is not None and model.opening.joint is not None:
         yield PartName(model, "joint", model.opening.joint)
 
 
+def parts_named(named: PartName, folder: Path) -> ModelParts | None:
+    """Return the parts in the file that a name in a ``.scenex`` in a folder is about; ``None`` if it is unreadable."""
+    gripper = named.model.gripper if named.in_gripper else None
+    source = None if gripper is None else gripper.source
+    return parts_of(named.model, folder) if source is None else _parts(source, folder)
+
+
 def parts_of(model: tree.Model, folder: Path) -> ModelParts | None:
     """Return the parts in the file that a model of a ``.scenex`` in a folder names; ``None`` if it is unreadable."""
-    path = model_path(folder, model.source)
-    if path is None or model.kind == "usd" or not path.is_file():
+    return None if model.kind == "usd" else _parts(model.source, folder)
+
+
+def _parts(source: tree.ModelSource, folder: Path) -> ModelParts | None:
+    path = model_path(folder, source)
+    if path is None or not path.is_file():
         return None
     parts = model_parts(path)
     return parts if parts.format else None

@@ -27,25 +27,27 @@ def pose(site: Site) -> Iterator[Diagnostic]:
     if not isinstance(site.tree, tree.SceneInstance | tree.KinematicTree):
         return
     for node in walk(site.tree):
-        if isinstance(node, tree.WorkspaceBox):
-            yield from _box(site, node)
+        if isinstance(node, tree.WorkspaceBox | tree.Gripper):
+            yield from _part(site, node)
         if isinstance(node, tree.Pose) and site.whole(node):
             yield from _position(site, node.position)
             orientation = node.orientation
             yield from _orientation(site, orientation if isinstance(orientation, tree.Sample) else orientation.value)
 
 
-def _box(site: Site, box: tree.WorkspaceBox) -> Iterator[Diagnostic]:
-    for written, what in ((box.offset, "an offset"), (box.size, "a size")):
+def _part(site: Site, part: tree.WorkspaceBox | tree.Gripper) -> Iterator[Diagnostic]:
+    what, size = ("a box", part.size) if isinstance(part, tree.WorkspaceBox) else ("a gripper", None)
+    for written, word in ((part.offset, "an offset"), (size, "a size")):
         count = 3 if written is None else len(numbers_of(written))
         if written is not None and count != 3:
-            yield _described(site, written, f"{what} needs 3 numbers, not {count}")
-    if box.orientation is None:
+            yield _described(site, written, f"{word} needs 3 numbers, not {count}")
+    if part.orientation is None:
         return
-    if isinstance(box.orientation.value, tree.Sample):
-        yield _described(site, box.orientation, "the orientation of a box cannot be drawn at random: write a rotation")
+    if isinstance(part.orientation.value, tree.Sample):
+        reason = f"the orientation of {what} cannot be drawn at random: write a rotation"
+        yield _described(site, part.orientation, reason)
     else:
-        yield from _orientation(site, box.orientation.value)
+        yield from _orientation(site, part.orientation.value)
 
 
 def _position(site: Site, written: tree.Vector | tree.Sample) -> Iterator[Diagnostic]:

@@ -28,15 +28,19 @@ def view(path: Path, name: str | None, seed: int | None, output: Path | None, sc
     return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output, scenex))
 
 
-def view_robot(arm: str, output: Path | None) -> int:
+def view_robot(arm: str, output: Path | None, gripper: Path | None, mount: str | None) -> int:
     """Print a report on an arm, given by its model file or its name in the catalog, and draw it; return the exit code.
 
-    Without graphics, the report is printed all the same.
+    ``gripper`` is the file of a gripper that is fixed to the body or site ``mount`` of the arm's file. Without
+    graphics, the report is printed all the same.
     """
+    if (gripper is None) != (mount is None):
+        return fail("a gripper needs both --gripper FILE and --on NAME, a body or site of the arm's file")
+    mounted = () if gripper is None or mount is None else (str(gripper.expanduser().absolute()), mount)
     file = Path(arm).expanduser()
     target = output or Path(f"{file.stem}.png")
     try:
-        lines, problem = render_robot(str(file.absolute()) if file.is_file() else arm, target)
+        lines, problem = render_robot(str(file.absolute()) if file.is_file() else arm, target, mounted)
     except NoPictures as error:
         return fail(str(error))
     print_line(f"{target}: {arm}" if not problem else arm)

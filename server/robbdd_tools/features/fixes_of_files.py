@@ -64,15 +64,15 @@ def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) ->
     """Yield fixes for a missing model file: similar paths, and the creation of an empty model at the missing path."""
     uri, own = file.document.uri, uri_to_path(file.document.uri)
     model = _model(file, diagnostic.span)
-    if model is None or own is None or not isinstance(model.source, tree.SystemPath):
+    if model is None or own is None:
         return
-    path, endings = model.source.path.value, MODEL_ENDINGS[model.kind]
+    (path, kinds), endings = model, frozenset[str]().union(*(MODEL_ENDINGS[kind] for kind in model[1]))
     quote = file.document.text[diagnostic.span.start]
     for found in _alike(path, uri, files_near(uri, lambda name: Path(name).suffix.lower() in endings)):
         yield Fix(f"Change to '{found}'", (Edit(uri, diagnostic.span, f"{quote}{found}{quote}"),))
     place = own.parent / path
-    if place.suffix.lower() in endings and not place.exists() and not path.startswith("~"):
-        text = _EMPTY_MODELS[model.kind].format(name=place.stem)
+    if len(kinds) == 1 and place.suffix.lower() in endings and not place.exists() and not path.startswith("~"):
+        text = _EMPTY_MODELS[kinds[0]].format(name=place.stem)
         yield Fix(f"Create '{path}' with an empty model", (), NewFile(path_to_uri(place), text))
 
 
@@ -118,16 +118,18 @@ def _link(file: FileAnalysis, span: Span) -> ImportLink | None:
     return next((link for link in file.imports if link.span == span), None)
 
 
-def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
-    """Return the model with its file's path at a span."""
+def _model(file: FileAnalysis, span: Span) -> tuple[str, tuple[str, ...]] | None:
+    """Return the path of the model file at a span, and the formats that it may have: two for a mounted gripper."""
     for placed in file.declarations:
         root = placed.declaration.tree
         nodes = walk(root) if root is not None and placed.span.contains(span.start) else ()
         for node in nodes:
-            if not isinstance(node, tree.Model) or not isinstance(node.source, tree.SystemPath):
+            if not isinstance(node, tree.Model):
                 continue
-            if node.source.path.span.shifted(placed.offset) == span:
-                return node
+            gripper = None if node.gripper is None else node.gripper.source
+            for source, kinds in ((node.source, (node.kind,)), (gripper, ("mjcf", "urdf"))):
+                if isinstance(source, tree.SystemPath) and source.path.span.shifted(placed.offset) == span:
+                    return source.path.value, kinds
     return None
 
 

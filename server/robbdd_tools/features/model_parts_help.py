@@ -12,7 +12,7 @@ from robbdd_tools.base.model_parts import model_parts
 from robbdd_tools.base.model_paths import package_share
 from robbdd_tools.base.source_texts import load_source
 from robbdd_tools.checks.model_file import model_path
-from robbdd_tools.checks.model_name import ACCEPTED, WANTED, part_names, parts_of
+from robbdd_tools.checks.model_name import ACCEPTED, WANTED, part_names, parts_named
 from robbdd_tools.features.markdown import code, literal
 from robbdd_tools.features.outside_place import OutsidePlace
 from robbdd_tools.syntax import tree
@@ -29,12 +29,16 @@ _TEXT = r"""(?:"[^"\n]*"|'[^'\n]*')"""
 _ENTRIES = {
     "map body": re.compile(r"\bmap\s+body\s*<[^<>\n]*>\s*to\s*\Z"),
     "tool": re.compile(r"\btool\s*:\s*\Z"),
+    "on": re.compile(r"\bon\s*:\s*\Z"),
     "actuator": re.compile(r"\bactuator\s*:\s*\Z"),
     "joint": re.compile(r"\bjoint\s*:\s*\Z"),
     "pads": re.compile(rf"\bpads\s*:\s*(?:{_TEXT}\s*,\s*)*\Z"),
 }
 _MODEL = re.compile(r"\bmodel\s+[\w-]+\s+(?:as\s+)?(?:mjcf|urdf)\s*\{")
 _SYSTEM = re.compile(rf"\bsys\s+path\s*=\s*({_TEXT})")
+_GRIPPER = re.compile(r"\bgripper\s*\{\s*(?:sys|ros)\b")
+_OF_GRIPPER = ("tool", "actuator", "pads")
+"""Entries that name parts of the gripper, where it has a file of its own."""
 _ROS = re.compile(rf"\bros\s+pkg\s*=\s*({_TEXT})\s*,\s*path\s*=\s*({_TEXT})")
 _NAME = re.compile(r"\bname\s*=\s*([\"'])")
 MAX_SHOWN = 8
@@ -55,7 +59,7 @@ def part_choices(uri: str, text: str, offset: int) -> Iterator[tuple[str, str, s
     entry = None if quote < 0 else next((one for one, form in _ENTRIES.items() if form.search(text, 0, quote)), None)
     if own is None or entry is None:
         return
-    path = _path_in_text(text, quote, own.parent)
+    path = _path_in_text(text, quote, own.parent, entry in _OF_GRIPPER)
     if path is None or not path.is_file():
         return
     typed = text[quote + 1 : offset]
@@ -70,7 +74,7 @@ def part_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, ModelPart]
         if own is not None and placed.span.contains(offset):
             for named in part_names(placed.declaration):
                 span = named.text.span.shifted(placed.offset)
-                parts = parts_of(named.model, own.parent) if span.contains(offset) else None
+                parts = parts_named(named, own.parent) if span.contains(offset) else None
                 part = None if parts is None else parts.find(named.text.value, *ACCEPTED[named.entry])
                 if part is not None:
                     return span, part
@@ -135,13 +139,15 @@ def _counted(parts: ModelParts, kind: str) -> str:
     return f"{len(names)} {word}: {', '.join(map(code, names[:MAX_SHOWN]))}{more}"
 
 
-def _path_in_text(text: str, offset: int, folder: Path) -> Path | None:
-    """Return the path of the model whose block contains an offset."""
+def _path_in_text(text: str, offset: int, folder: Path, of_gripper: bool) -> Path | None:
+    """Return the path of the model whose block contains an offset: that of its gripper, if it has one and is wanted."""
     starts = [found.end() for found in _MODEL.finditer(text, 0, offset)]
     if not starts:
         return None
     following = _MODEL.search(text, offset)
     block = text[starts[-1] : following.start() if following is not None else len(text)]
+    mounted = _GRIPPER.search(block) if of_gripper else None
+    block = block if mounted is None else block[mounted.start() :]
     system, ros = _SYSTEM.search(block), _ROS.search(block)
     try:
         if system is not None:

@@ -54,10 +54,19 @@ def _named(declaration: Declaration, folder: Path) -> Iterator[Path]:
     if isinstance(root, tree.RobotLog):
         yield from _of_log(root, folder)
     for node in walk(root) if isinstance(root, tree.SceneInstance) else ():
-        path = model_path(folder, node.source) if isinstance(node, tree.Model) and node.kind != "usd" else None
-        if path is not None:
-            yield path
-            yield from model_parts(path).files if path.is_file() else ()
+        for source in _sources(node) if isinstance(node, tree.Model) else ():
+            path = model_path(folder, source)
+            if path is not None:
+                yield path
+                yield from model_parts(path).files if path.is_file() else ()
+
+
+def _sources(model: tree.Model) -> Iterator[tree.ModelSource]:
+    """Yield the sources of a model and of its gripper whose text is read."""
+    if model.kind != "usd":
+        yield model.source
+    if model.gripper is not None and model.gripper.source is not None:
+        yield model.gripper.source
 
 
 def _of_log(log: tree.RobotLog, folder: Path) -> Iterator[Path]:

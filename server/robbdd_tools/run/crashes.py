@@ -125,6 +125,5 @@ def _origin(code: str, spec: ScenarioSpec | None) -> str:
         named += [(policy.rule.name, policy.iri) for policy in execution.policies]
     scene = spec.instance
     if scene is not None:
-        models = (*scene.models, *(one for entry in scene.elements for one in entry.models))
-        named += [(model.name, model.iri) for model in models]
+        named += [(model.name, model.iri) for model in scene.sources]
     return dict(reversed(named)).get(code, "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from robbdd_tools.base.graphics import CHOICE, NO_GRAPHICS, back_ends, nothing_renders
@@ -50,22 +50,22 @@ def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, in
     return len(_render(folder, THUMBNAILS, output, [f"{index}:{line}" for index, line in chosen]))
 
 
-def render_robot(arm: str, output: Path) -> tuple[list[str], str]:
+def render_robot(arm: str, output: Path, mounted: Sequence[str] = ()) -> tuple[list[str], str]:
     """Render one arm alone. Return the lines of its report, and why there is no picture (empty if there is one).
 
-    ``arm`` is the path of an MJCF or URDF file or a name of the catalog. Raises ``NoPictures`` if the arm cannot be
-    used.
+    ``arm`` is the path of an MJCF or URDF file or a name of the catalog. ``mounted`` is the path of a gripper's file
+    and the body or site of the arm that carries it. Raises ``NoPictures`` if the arm cannot be used.
     """
     tried: list[str] = []
     for back_end in back_ends():
-        done = run("robbdd_tools.agent.show_robot", arm, str(output.absolute()), more={CHOICE: back_end})
+        done = run("robbdd_tools.agent.show_robot", arm, str(output.absolute()), *mounted, more={CHOICE: back_end})
         if done.returncode == 0:
             return done.stdout.splitlines(), ""
         said = _last_line(done.stderr, done.returncode)
         if done.returncode != NO_GRAPHICS:
             raise NoPictures(said)
         tried.append(f"{back_end}: {said}")
-    done = run("robbdd_tools.agent.show_robot", arm, "-", more={CHOICE: "disable"})
+    done = run("robbdd_tools.agent.show_robot", arm, "-", *mounted, more={CHOICE: "disable"})
     if done.returncode != 0:
         raise NoPictures(_last_line(done.stderr, done.returncode))
     return done.stdout.splitlines(), nothing_renders(tried)

@@ -115,7 +115,7 @@ def _graphs(instance: SceneInstance) -> Iterator[Path]:
 
 
 def _model_files(instance: SceneInstance, model: str) -> Iterator[Path]:
-    for source in (*instance.models, *(one for element in instance.elements for one in element.models)):
+    for source in instance.sources:
         if source.kind == "python":
             yield from _modules(source.name, _folder(source.origin, model))
         elif source.kind in ("file", "ros"):

@@ -85,7 +85,7 @@ def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> It
 
 
 def _models(instance: SceneInstance) -> Iterator[str]:
-    for source in (*instance.models, *(one for entry in instance.elements for one in entry.models)):
+    for source in instance.sources:
         if source.kind == "python":
             yield f"{source.origin or instance.iri}: a model is created by the Python code {source.name}"
 

@@ -77,8 +77,16 @@ class Mapping(Node):
 
 @dataclass(frozen=True, slots=True)
 class Gripper(Node):
-    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: fingers, or a suction cup."""
+    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: fingers, or a suction cup.
 
+    A gripper from a file of its own begins with ``sys path = '…' on: "…"``, then ``offset`` and ``orientation``.
+    """
+
+    source: SystemPath | RosPath | None
+    mount: Text | None
+    offset: Vector | None
+    offset_unit: str | None
+    orientation: Quaternion | Euler | DirectionCosines | None
     actuator: Text | None
     open: Number | None
     close: Number | None

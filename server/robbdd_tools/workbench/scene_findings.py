@@ -125,8 +125,7 @@ def file_states(instances: list[SceneInstance]) -> Iterator[FileState | None]:
 
 def _all_files(instances: list[SceneInstance]) -> Iterator[Path]:
     for instance in instances:
-        models = [*instance.models, *(model for one in instance.elements for model in one.models)]
-        yield from dict.fromkeys(path for model in models for path in _files(model))
+        yield from dict.fromkeys(path for model in instance.sources for path in _files(model))
 
 
 def _files(model: ModelSource) -> Iterator[Path]:

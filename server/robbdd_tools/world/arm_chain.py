@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.gripper_names import name_in_file
 from robbdd_tools.world.srdf_semantics import path_to
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
     else the last body, but no body beyond the stated tool. If the last body is a jaw, the palm is the body before it.
     Of several hands, the one that carries the tool is chosen.
     """
-    tool = path_to(tool_body(spec, source, arm.tool)) if arm.tool else []
+    tool = path_to(body_of(spec, source.gripper or source, arm.tool, "tool")) if arm.tool else []
     carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
     paths = [[str(body.name) for body in path_to(one)] for one in carriers if one is not None]
     named = [str(one.name) for one in tool] or (paths[0] if paths else [])
@@ -121,20 +122,23 @@ def _hand_of(branch: Any, bare: int | None) -> str | None:
     return str(body.name) if enough is not None and joints >= enough else None
 
 
-def tool_body(spec: Any, source: ModelSource, name: str) -> Any:
-    """Return the body of the stated tool. Raises ``SceneError``."""
+def body_of(spec: Any, source: ModelSource, name: str, what: str) -> Any:
+    """Return the body with a name, or with the site of this name, which ``what`` needs. Raises ``SceneError``."""
     site = spec.site(name)
     body = site.parent if site is not None else spec.body(name)
     if body is None:
         near = get_close_matches(name, [str(one.name) for one in (*spec.sites, *spec.bodies[1:])], n=1)
         sites, bodies = _names(spec.sites), _names(spec.bodies[1:])
-        known = f"did you mean '{near[0]}'?" if near else f"it has the sites {sites} and the bodies {bodies}"
-        raise SceneError(f"{source.name} has no site or body '{name}' for the tool; {known}", origin=source.origin)
+        known = f"it has the sites {sites} and the bodies {bodies}"
+        if near:
+            known = f"did you mean '{name_in_file(near[0])}'?"
+        missing = f"{source.name} has no site or body '{name_in_file(name)}' for the {what}"
+        raise SceneError(f"{missing}; {known}", origin=source.origin)
     return body
 
 
 def _names(things: Any) -> str:
-    names = [str(thing.name) for thing in things if thing.name]
+    names = [name_in_file(str(thing.name)) for thing in things if thing.name]
     return ", ".join(names[:MAX_LISTED]) + (" …" if len(names) > MAX_LISTED else "") or "none"
 
 

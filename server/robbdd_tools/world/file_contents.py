@@ -39,20 +39,8 @@ def reduce_to_arm(spec: Any, source: ModelSource) -> list[str]:
 
     Return what was changed, as lines for a report. Raises ``SceneError`` for an arm on a floating base.
     """
-    for geom in list(spec.worldbody.geoms):
-        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
-            spec.delete(geom)
-    for lamp in list(spec.lights):
-        spec.delete(lamp)
-    for number, body in enumerate(spec.bodies[1:]):
-        body.name = body.name or f"part{number}"
-    for number, actuator in enumerate(spec.actuators):
-        actuator.name = actuator.name or f"actuator{number}"
-    for number, joint in enumerate(spec.joints):
-        joint.name = joint.name or f"joint{number}"
-    for number, tendon in enumerate(spec.tendons):
-        tendon.name = tendon.name or f"tendon{number}"
-    changes = _leave_out_scene(spec, source)
+    name_parts(spec)
+    changes = leave_out_scene(spec, source)
     for joint in spec.joints:
         if joint.type in (_FREE, mujoco.mjtJoint.mjJNT_BALL):
             kind = "a free joint" if joint.type == _FREE else "a ball joint"
@@ -67,11 +55,28 @@ def reduce_to_arm(spec: Any, source: ModelSource) -> list[str]:
     return changes
 
 
-def _leave_out_scene(spec: Any, source: ModelSource) -> list[str]:
-    """Remove the loose objects and mocap bodies of a file; return what was removed, as lines for a report.
+def name_parts(spec: Any) -> None:
+    """Name the bodies, joints, actuators and tendons of a file that have no name."""
+    for number, body in enumerate(spec.bodies[1:]):
+        body.name = body.name or f"part{number}"
+    for number, actuator in enumerate(spec.actuators):
+        actuator.name = actuator.name or f"actuator{number}"
+    for number, joint in enumerate(spec.joints):
+        joint.name = joint.name or f"joint{number}"
+    for number, tendon in enumerate(spec.tendons):
+        tendon.name = tendon.name or f"tendon{number}"
 
-    Fixed objects stay: the arm can collide with them.
+
+def leave_out_scene(spec: Any, source: ModelSource) -> list[str]:
+    """Remove floors, lamps, loose objects and mocap bodies; return what was removed, as lines for a report.
+
+    Fixed objects stay: the arm can collide with them. Raises ``SceneError``.
     """
+    for geom in list(spec.worldbody.geoms):
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+            spec.delete(geom)
+    for lamp in list(spec.lights):
+        spec.delete(lamp)
     mocaps = [body for body in spec.bodies[1:] if body.mocap and not _joints_below(body)]
     tops = list(spec.worldbody.bodies)
     loose = [body for body in tops if _is_loose(body)]

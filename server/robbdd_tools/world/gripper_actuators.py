@@ -12,6 +12,7 @@ from robbdd_tools.world.coupled_joints import RIGID, stiffen
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.gripper_faces import length_of
+from robbdd_tools.world.gripper_names import name_in_file
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -94,7 +95,9 @@ class GripperActuator:
         if name:
             found = self._spec.actuator(name)
             if found is None and self._spec.joint(name) is None:
-                raise self._parts.error(f"has no actuator or joint '{name}': the file has {_known(self._spec)}")
+                raise self._parts.error(
+                    f"has no actuator or joint '{name_in_file(name)}': the file has {_known(self._spec)}"
+                )
             return found or self._servo(self._spec.joint(name))
         found = [one for one in self._spec.actuators if self._is_behind(one)]
         if found:
@@ -104,9 +107,15 @@ class GripperActuator:
             return self._coupled([self._servo(joint) for joint in free])
         if len(self._arm.pads) == 1:
             return self._vacuum(self._arm.pads[0])
+        if self._arm.mounted is not None:
+            raise self._parts.error("has no joints and no actuators")
         lacks = f"beyond the body '{self._parts.palm}', the file has no joints and no actuators"
-        wanted = 'Name a file with arm and gripper, or the face of a suction cup: gripper { pads: "cup" stroke: 30 mm }'
-        text = f"the arm in {self._source.name} has no gripper: {lacks}. {wanted}"
+        ways = (
+            "Name a file with both",
+            'fix a gripper to it, gripper { sys path = "FILE" on: "BODY OR SITE" }',
+            'or name the face of a suction cup, gripper { pads: "cup" stroke: 30 mm }',
+        )
+        text = f"the arm in {self._source.name} has no gripper: {lacks}. {', '.join(ways)}"
         raise SceneError(text, origin=self._source.origin)
 
     def _is_behind(self, actuator: Any) -> bool:
@@ -230,7 +239,7 @@ def gripping_face(spec: Any, source: ModelSource, name: str) -> Any:
     touching = [] if body is None else [one for one in body.geoms if one.contype or one.conaffinity]
     if not touching:
         known = f"it has the geoms {_names(spec.geoms)} and the bodies {_names(spec.bodies[1:])}"
-        raise SceneError(f"{source.name} has no gripping face '{name}'; {known}", origin=source.origin)
+        raise SceneError(f"{source.name} has no gripping face '{name_in_file(name)}'; {known}", origin=source.origin)
     touching[0].name = touching[0].name or name
     if source.format == "urdf":
         make_rubber(touching[0])
@@ -261,7 +270,7 @@ def _common(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _names(things: Any) -> str:
-    return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
+    return ", ".join(name_in_file(str(thing.name)) for thing in things if thing.name) or "none"
 
 
 def _known(spec: Any) -> str:

@@ -230,7 +230,7 @@ class _Search:
         posture, nearest, since = start, np.inf, 0
         for _ in range(ROUNDS):
             place, turn = self._forward(posture)
-            gap = np.concatenate([goal - place, _tilt(turn, across)])
+            gap = np.concatenate([goal - place, turn_down(turn, across)])
             if np.abs(gap).max() < CLOSE:
                 return posture
             error = float(np.linalg.norm(gap))
@@ -271,10 +271,11 @@ class _Search:
             body = int(self._model.body_parentid[body])
 
 
-def _tilt(turn: FloatArray, across: FloatArray | None) -> FloatArray:
-    """Return the rotation vector (3,) after which the z axis of a tool with the rotation (3, 3) points down.
+def turn_down(turn: FloatArray, across: FloatArray | None) -> FloatArray:
+    """Return the step (3,), a rotation vector, towards a tool with the rotation (3, 3) whose z axis points down.
 
-    With ``across`` (3,), horizontal, it also turns the y axis there, about the vertical.
+    Its length is the angle (rad) or, for a tool that points below the horizontal, the sine of the angle. With
+    ``across`` (3,), horizontal, it also turns the y axis there, about the vertical.
     """
     x, y = float(turn[0, 2]), float(turn[1, 2])
     tilt = [-y, x, 0.0]

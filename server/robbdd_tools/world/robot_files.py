@@ -33,10 +33,12 @@ from robbdd_tools.world.file_contents import (
 from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
 from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import GripperReader
+from robbdd_tools.world.gripper_names import named_in_spec
 from robbdd_tools.world.home_posture import find_home
 from robbdd_tools.world.mesh_pieces import use_pieces
 from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
 from robbdd_tools.world.model_meshes import read_whole
+from robbdd_tools.world.mounted_gripper import gripper_of, mount_gripper
 from robbdd_tools.world.planar_joints import drives
 from robbdd_tools.world.srdf_semantics import apply_srdf, path_to
 from robbdd_tools.world.tilted_base import UPRIGHT, tilt_model
@@ -86,14 +88,14 @@ def _read_once(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel:
 
 
 def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel:
-    stated = source.arm or ArmModel()
+    stated = named_in_spec(source.arm or ArmModel())
     spec = load(source)
     changes: list[str] = []
     if source.kind in ("file", "ros") and is_urdf(path_of(source)):
         # The engine refuses inertias that no body can have; drivers of real arms never read them.
         spec.compiler.balanceinertia = True
         changes = give_mass(spec, massless_links(path_of(source)))
-    changes = [*reduce_to_arm(spec, source), *changes]
+    changes = [*reduce_to_arm(spec, source), *changes, *mount_gripper(spec, source)]
     put_at_origin(spec, next((body for _, body in source.bodies), ""))
     semantics = apply_srdf(spec, source)
     arm = semantics.complete(spec, stated)
@@ -114,7 +116,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
         raise SceneError(
             f"the robot in {source.name} drives on the floor, so its base cannot be tilted", origin=source.origin
         )
-    parts = GripperParts(spec, source, arm, str(chain[-1].name), semantics.note(stated, arm))
+    parts = GripperParts(spec, gripper_of(source) or source, arm, str(chain[-1].name), semantics.note(stated, arm))
     parts.name_geoms()
     gripper = GripperReader(parts).read()
     changes += parts.changes

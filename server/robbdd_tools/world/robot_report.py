@@ -17,6 +17,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import changes_of
 from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.grip_force import grip_force
+from robbdd_tools.world.gripper_names import name_in_file
 from robbdd_tools.world.mesh_pieces import CUT
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.model_files import load, path_of, velocity_limits
@@ -28,6 +29,8 @@ from robbdd_tools.world.srdf_semantics import file_of
 from robbdd_tools.world.urdf_files import impossible_inertias
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from robbdd_tools.catalog.api import RobotModel
     from robbdd_tools.catalog.executable import ModelSource
     from robbdd_tools.world.simulation import Simulation
@@ -51,14 +54,9 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield from _table([["joint", "kind", "limits", "largest speed", "home"], *_joints(model, name, robot, source)])
     if source is not None:
         yield from _semantic_description(source)
-    if source is not None and source.kind in ("file", "ros"):
-        unusual = ", ".join(impossible_inertias(path_of(source)))
-        if unusual:
-            yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
-        hollow = whole_meshes(path_of(source))
-        if hollow:
-            meshes = ", ".join(f"{mesh.name} ({share:.1f} times its volume)" for mesh, share in hollow.items())
-            yield f"hollow meshes, each of which collides as its convex hull: {meshes}; {CUT}"
+    for file in (source, None if source is None else source.gripper):
+        if file is not None and file.kind in ("file", "ros"):
+            yield from _remarks(path_of(file))
     yield from changes_of(robot.mjcf)
     base = base_of(robot)
     if base is not None:
@@ -67,7 +65,9 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         yield f"base: drives by the joints {', '.join(base.joints)}, at most with {limits}"
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
-    yield f"gripper: actuator '{robot.gripper_actuator}', open at {robot.gripper_open:g}, closed at " + (
+    if source is not None and source.gripper is not None and source.arm is not None and source.arm.mounted is not None:
+        yield f"gripper from {source.gripper.name}, fixed to '{source.arm.mounted.mount}'"
+    yield f"gripper: actuator '{name_in_file(robot.gripper_actuator)}', open at {robot.gripper_open:g}, closed at " + (
         f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'across' if is_cup else 'wide'}"
     )
     if (force := grip_force(model, name, robot)) is not None:
@@ -79,12 +79,23 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
     yield f"gripping faces: {shown}, {_friction(model, name, robot)}"
 
 
+def _remarks(path: Path) -> Iterator[str]:
+    """Yield what a file states that a run cannot use as it is."""
+    unusual = ", ".join(impossible_inertias(path))
+    if unusual:
+        yield f"inertias that no body can have, replaced by the mean of their principal moments: {unusual}"
+    hollow = whole_meshes(path)
+    if hollow:
+        meshes = ", ".join(f"{mesh.name} ({share:.1f} times its volume)" for mesh, share in hollow.items())
+        yield f"hollow meshes, each of which collides as its convex hull: {meshes}; {CUT}"
+
+
 def _shape(model: Any, name: str, shape: str) -> str:
     """Return the name of a gripping shape in the file or, without one, that of its link."""
     if not shape.startswith(FOUND):
-        return shape
+        return name_in_file(shape)
     body = model.body(int(model.geom(f"{name}/{shape}").bodyid[0]))
-    return f"a shape of '{body.name.removeprefix(f'{name}/')}'"
+    return f"a shape of '{name_in_file(body.name.removeprefix(f'{name}/'))}'"
 
 
 def _fingers(model: Any, name: str, robot: RobotModel) -> str:
@@ -99,15 +110,17 @@ def as_stated(robot: RobotModel, name: str, source: ModelSource) -> ArmModel:
     Data about a gripper are left out if they would change it: several actuators may close it, but only one can be
     named.
     """
-    if NUMBERED.fullmatch(robot.gripper_actuator):
-        return ArmModel(home=robot.home, velocity=robot.velocity_limits)
+    mounted = None if source.arm is None else source.arm.mounted
+    actuator = name_in_file(robot.gripper_actuator)
+    if NUMBERED.fullmatch(actuator):
+        return ArmModel(home=robot.home, velocity=robot.velocity_limits, mounted=mounted)
     faces = finger_motion(robot).faces
-    pads = tuple(face[0] for face in faces if len(face) == 1 and not face[0].startswith(FOUND))
-    tool = "" if robot.tool_site.startswith(FOUND) else robot.tool_site
-    plain = ArmModel(tool=tool, home=robot.home, velocity=robot.velocity_limits)
+    pads = tuple(name_in_file(face[0]) for face in faces if len(face) == 1 and not face[0].startswith(FOUND))
+    tool = "" if robot.tool_site.startswith(FOUND) else name_in_file(robot.tool_site)
+    plain = ArmModel(tool=tool, home=robot.home, velocity=robot.velocity_limits, mounted=mounted)
     full = replace(
         plain,
-        actuator=robot.gripper_actuator,
+        actuator=actuator,
         open=robot.gripper_open,
         closed=robot.gripper_closed,
         pads=pads if len(pads) == len(faces) else (),
@@ -128,8 +141,12 @@ def stated(arm: ArmModel, source: ModelSource, joints_slide: bool) -> Iterator[s
     yield f"    sys path = '{source.name}'"
     if arm.tool:
         yield f'    tool: "{arm.tool}"'
-    if arm.actuator:
+    if arm.actuator or arm.mounted is not None:
         yield "    gripper {"
+    if arm.mounted is not None:
+        yield f"        sys path = '{arm.mounted.name}'"
+        yield f'        on: "{arm.mounted.mount}"'
+    if arm.actuator:
         yield f'        actuator: "{arm.actuator}"'
         yield f"        open: {arm.open:.6g}"
         yield f"        close: {arm.closed:.6g}"
@@ -137,6 +154,7 @@ def stated(arm: ArmModel, source: ModelSource, joints_slide: bool) -> Iterator[s
             pads = ", ".join(f'"{pad}"' for pad in arm.pads)
             yield f"        pads: {pads}"
         yield f"        stroke: {1000 * arm.stroke:.4g} mm"
+    if arm.actuator or arm.mounted is not None:
         yield "    }"
     yield f"    home: ({', '.join(_number(value, 6) for value in arm.home)}) rad"
     note = "   // sliding joints in m/s" if joints_slide else ""

@@ -211,6 +211,9 @@ class Staging:
             found = load_catalog().robots.get(chosen.name)
             if found is None:
                 raise SceneError(f"the catalog has no robot '{chosen.name}'", origin=chosen.origin)
+            if chosen.arm is not None:
+                text = f"'{chosen.name}' of the catalog has its own tool, gripper, home and speeds"
+                raise SceneError(f"{text}: remove yours, or name a file", origin=chosen.origin)
             turned = tilted(found, tilt, chosen)
             _refuse_above_floor(turned, placed, chosen)
             return turned

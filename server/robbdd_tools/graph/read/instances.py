@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from robbdd_tools.catalog.executable import (
     Law,
     Link,
     ModelSource,
+    MountedGripper,
     OpeningModel,
     Origin,
     Realisation,
@@ -212,8 +214,19 @@ class InstanceReader:
             pads = ()
         opened, closed, stroke = (number(records, node, term) for term in _GRIPPER)
         home, velocity = self._numbers(node, "rbw:home"), self._numbers(node, "rbw:velocity-limits")
-        arm = ArmModel(tool, actuator, opened, closed, pads, stroke or 0.0, home, velocity)
+        mounted = self._mounted_gripper(node)
+        arm = ArmModel(tool, actuator, opened, closed, pads, stroke or 0.0, home, velocity, mounted)
         return None if arm == ArmModel() else arm
+
+    def _mounted_gripper(self, node: Iri) -> MountedGripper | None:
+        records = self._records
+        for gripper in records.iris(records.all(node, "rbw:mounted-gripper")):
+            kind, name = self._source(gripper)
+            mount, package = (records.text(gripper, term) for term in ("rbw:mount", "rbw:ros-package"))
+            place, turn = self._numbers(gripper, "rbw:position"), self._numbers(gripper, "rbw:orientation")
+            usual = MountedGripper(kind, name, mount, package)
+            return replace(usual, position=place or usual.position, rotation=turn or usual.rotation)
+        return None
 
     def _opening(self, node: Iri) -> OpeningModel | None:
         terms = ("rbw:opening-joint", "rbw:opening-closed", "rbw:opening-open")

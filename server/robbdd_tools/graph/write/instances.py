@@ -163,15 +163,22 @@ class _InstanceWriter:
         if node is None:
             return None
         sink.add_types(node, ["rbw:WorkspaceBox"], frame.at(box))
-        written = ((("rbw:position", box.offset, box.offset_unit)), ("rbw:edges", box.size, box.size_unit))
-        for term, vector, unit in written:
-            if vector is not None:
-                metres = [sink.literal(number * LENGTHS[unit or "m"]) for number in numbers_of(vector)]
-                sink.add(node, term, sink.make_list(metres), frame.at(vector))
-        value = None if box.orientation is None else box.orientation.value
-        if value is not None and not isinstance(value, tree.Sample) and (turn := rotation_of(value)) is not None:
-            sink.add(node, "rbw:orientation", sink.make_list(map(sink.literal, turn)), frame.at(value))
+        self._lengths(node, "rbw:edges", box.size, box.size_unit)
+        self._offset(node, box)
         return node
+
+    def _offset(self, node: URIRef, part: tree.WorkspaceBox | tree.Gripper) -> None:
+        """Write where a part is in the frame of another one."""
+        sink = self._sink
+        self._lengths(node, "rbw:position", part.offset, part.offset_unit)
+        value = None if part.orientation is None else part.orientation.value
+        if value is not None and not isinstance(value, tree.Sample) and (turn := rotation_of(value)) is not None:
+            sink.add(node, "rbw:orientation", sink.make_list(map(sink.literal, turn)), self._frame.at(value))
+
+    def _lengths(self, node: URIRef, term: str, vector: tree.Vector | None, unit: str | None) -> None:
+        if vector is not None:
+            metres = [self._sink.literal(number * LENGTHS[unit or "m"]) for number in numbers_of(vector)]
+            self._sink.add(node, term, self._sink.make_list(metres), self._frame.at(vector))
 
     def _models(self, instance: URIRef, entries: Iterable[tree.Node]) -> list[URIRef | None]:
         return [self._model(instance, entry) for entry in entries if isinstance(entry, tree.Model)]
@@ -183,7 +190,15 @@ class _InstanceWriter:
             return None
         sink.add_types(node, ["rbw:Model"], frame.at(model.name))
         sink.add(node, "rbw:format", sink.literal(model.kind))
-        match model.source:
+        self._source(node, model.source)
+        mappings = [self._mapping(node, number, one) for number, one in enumerate(model.mappings)]
+        sink.add(node, "rbw:mappings", sink.make_list(mappings))
+        self._arm(node, model)
+        return node
+
+    def _source(self, node: URIRef, source: tree.ModelSource) -> None:
+        sink, frame = self._sink, self._frame
+        match source:
             case tree.SystemPath(path=path):
                 sink.add(node, "rbw:path", sink.literal(path.value), frame.at(path))
             case tree.RosPath(package=package, path=path):
@@ -191,12 +206,8 @@ class _InstanceWriter:
                 sink.add(node, "rbw:path", sink.literal(path.value), frame.at(path))
             case tree.CatalogEntry(name=name):
                 sink.add(node, "rbw:catalog-name", sink.literal(name.value), frame.at(name))
-            case tree.PythonAttribute() as source:
+            case tree.PythonAttribute():
                 add_python(frame, node, source)
-        mappings = [self._mapping(node, number, one) for number, one in enumerate(model.mappings)]
-        sink.add(node, "rbw:mappings", sink.make_list(mappings))
-        self._arm(node, model)
-        return node
 
     def _mapping(self, model: URIRef, number: int, mapping: tree.Mapping) -> URIRef | None:
         sink = self._sink
@@ -231,6 +242,7 @@ class _InstanceWriter:
 
     def _gripper(self, node: URIRef, gripper: tree.Gripper) -> None:
         sink, frame = self._sink, self._frame
+        self._mounted_gripper(node, gripper)
         if gripper.actuator is not None:
             name = sink.literal(gripper.actuator.value)
             sink.add(node, "rbw:gripper-actuator", name, frame.at(gripper.actuator))
@@ -243,6 +255,18 @@ class _InstanceWriter:
         if gripper.pads:
             pads = sink.make_list([sink.literal(pad.value) for pad in gripper.pads])
             sink.add(node, "rbw:gripper-pads", pads, frame.at(gripper))
+
+    def _mounted_gripper(self, arm: URIRef, gripper: tree.Gripper) -> None:
+        """Write the file of a gripper that has one of its own, and where it is fixed to the arm."""
+        sink, frame = self._sink, self._frame
+        node = sink.iri(f"{arm}.gripper")
+        if gripper.source is None or gripper.mount is None or node is None:
+            return
+        sink.add_types(node, ["rbw:MountedGripper"], frame.at(gripper))
+        self._source(node, gripper.source)
+        sink.add(node, "rbw:mount", sink.literal(gripper.mount.value), frame.at(gripper.mount))
+        self._offset(node, gripper)
+        sink.add(arm, "rbw:mounted-gripper", node, frame.at(gripper))
 
     def _opening(self, node: URIRef, opening: tree.Opening) -> None:
         sink, frame = self._sink, self._frame
