@@ -24,9 +24,15 @@ from robbdd_tools.world.finger_motion import finger_motion
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.staging import Staging
 from world import strangers
-from world.arms import MJCF, SHEARS
+from world.arms import MJCF, SHEARS, URDF
 from world.arms_from_files import ARM, picking, robot, source
 from world.worlds import CUBE, SCENE
+
+
+def test_fingers_that_do_not_come_to_rest_are_named(tmp_path: Path) -> None:
+    light = URDF.replace('<mass value="0.05"/>', '<mass value="0.001"/>')
+    with pytest.raises(SceneError, match=r"name its pads\. It does not come to rest within 10 s: check the masses"):
+        robot(tmp_path, light)
 
 
 def test_the_fingers_of_two_actuators_are_one_gripper(tmp_path: Path) -> None:

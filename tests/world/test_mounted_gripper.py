@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robbdd_tools.catalog.api import RobotModel
+from robbdd_tools.catalog.api import GripperKind, RobotModel
 from robbdd_tools.catalog.executable import ArmModel, ModelSource, MountedGripper
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
@@ -182,6 +182,21 @@ def test_a_gripper_without_joints_is_named(tmp_path: Path) -> None:
     bracket = '<mujoco><worldbody><body name="b"><geom size=".02"/></body></worldbody></mujoco>'
     with pytest.raises(SceneError, match=r"the gripper of fingers\.xml has no joints and no actuators"):
         read(tmp_path, mounted(), bracket)
+
+
+def test_a_suction_cup_is_named_by_its_face(tmp_path: Path) -> None:
+    shape = '<geom type="cylinder" size=".014 .04" pos="0 0 .04"/>'
+    cup = f'<mujoco><worldbody><body name="cup">{shape}</body></worldbody></mujoco>'
+    found = read(tmp_path, replace(mounted(), pads=("cup",), stroke=0.028), cup)
+    assert (found.gripper, found.stroke) == (GripperKind.SUCTION, 0.028)
+    place, _ = tool_in_hand(found)
+    assert place == pytest.approx([0.0, 0.0, 0.11], abs=1e-3)
+
+
+def test_faces_without_friction_are_those_of_the_file_of_the_gripper(tmp_path: Path) -> None:
+    smooth = GRIPPER.replace('friction="0.9 0.01 0.001"', 'friction="0 0 0"')
+    with pytest.raises(SceneError, match=r"the gripping faces in fingers\.xml have no friction"):
+        picking(tmp_path, BARE, with_gripper(tmp_path, mounted(), smooth).arm)
 
 
 def test_an_arm_without_a_gripper_is_told_how_to_get_one(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ class GripperActuator:
         if len(self._arm.pads) == 1:
             return self._vacuum(self._arm.pads[0])
         if self._arm.mounted is not None:
-            raise self._parts.error("has no joints and no actuators")
+            raise self._parts.error('has no joints and no actuators: name the face of a suction cup, pads: "cup"')
         lacks = f"beyond the body '{self._parts.palm}', the file has no joints and no actuators"
         ways = (
             "Name a file with both",

@@ -12,7 +12,7 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.engine_faults import strict
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.finger_opening import Opening
-from robbdd_tools.world.finger_sweep import joints_beside, lever_of, move_alone, swept
+from robbdd_tools.world.finger_sweep import SETTLING, joints_beside, lever_of, move_alone, swept
 from robbdd_tools.world.gripper_actuators import GripperActuator, GripperParts, gripping_face, make_rubber, press
 from robbdd_tools.world.gripper_faces import MOVES, extent, gap, meeting_faces
 from robbdd_tools.world.hand_direction import finger_frame, jaw_frame, outwards
@@ -26,6 +26,8 @@ CONTRADICTION = 0.25
 """A stated stroke may differ from the measured one by this share."""
 SLACK = 1e-6
 """A stated value may be this far outside the actuator's range, because files round."""
+LONGEST = (SETTLING - 1) * 0.002
+"""A gripper that moves for this time (s) does not come to rest."""
 TIP = 0.015
 """The tool is this far (m) from the ends of the gripping faces: half the length of usual pads."""
 
@@ -164,8 +166,10 @@ class GripperReader:
         faces = meeting_faces(model, bodies, states)
         if not faces:
             hollow = hollow_meshes(model, bodies)
-            cut = f". A hollow mesh collides as its convex hull; {CUT}" if hollow else ""
-            raise self._parts.error(f"has no two parts that meet when it closes: name its pads{cut}")
+            why = f". A hollow mesh collides as its convex hull; {CUT}" if hollow else ""
+            if self._settling >= LONGEST:
+                why += f". It does not come to rest within {LONGEST:.0f} s: check the masses and drives of its fingers"
+            raise self._parts.error(f"has no two parts that meet when it closes: name its pads{why}")
         if self._source.format == "urdf":
             for name in (name for face in faces for name in face):
                 make_rubber(self._parts.spec.geom(name))

@@ -219,7 +219,7 @@ class Staging:
             return turned
         found = robot_from(chosen, element, tilt or (None if placed is None else far_from_tables(placed, rise)))
         if not any(element in (friction.first, friction.second) for friction in self.frictions):
-            refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen)
+            refuse_smooth_faces(prepared_robot(found.mjcf), found, chosen.gripper or chosen)
         _refuse_above_floor(found, placed, chosen)
         return found
 
