@@ -25,20 +25,23 @@ from world.arms import MJCF
 from world.arms_from_files import source
 from world.arms_of_others import FOLDER
 from world.scene_instances import instance, link
+from world.test_mounted_gripper import BARE, GRIPPER, mounted
 from world.worlds import BIN, BIN_WS, CUBE, SCENE, pick_place, scenario
 
 LEFT, RIGHT = "env:left", "env:right"
 TORSO = "left+right"
+BARE_OF_SIX = BARE.replace('<joint name="elbow"', '<joint name="twist" axis="0 0 1" range="-3 3"/><joint name="elbow"')
+"""An arm of six joints without a gripper: one with fewer counts as a finger, a wheel or a head."""
 
 
-def two_arms(beside: float) -> str:
+def two_arms(beside: float, arm: str = MJCF) -> str:
     """Return a file with a torso that carries two arms beside its middle (m), and a post behind the left one."""
     both = mujoco.MjSpec()
     torso = both.worldbody.add_body(name="torso")
     torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.05, 0.3, 0.02], pos=[-0.1, 0.0, 0.02])
     torso.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.1, 0.2], pos=[-0.62, 0.35, 0.2])
     for prefix, aside in (("l_", beside), ("r_", -beside)):
-        both.attach(mujoco.MjSpec.from_string(MJCF), prefix=prefix, frame=torso.add_frame(pos=[0.0, aside, 0.0]))
+        both.attach(mujoco.MjSpec.from_string(arm), prefix=prefix, frame=torso.add_frame(pos=[0.0, aside, 0.0]))
     model = both.compile()
     key = f'<keyframe><key name="rest" qpos="{" ".join(["0"] * model.nq)}"/></keyframe>'
     apart = '<contact><exclude body1="r_hand" body2="l_hand"/></contact>'
@@ -50,21 +53,28 @@ def begun(
     tools: tuple[str, str] = ("l_hand", "r_hand"),
     aside: float = 0.0,
     beside: float = 0.25,
+    flanges: tuple[str, str] | None = None,
     **calls: str,
 ) -> Execution:
-    """Return an execution with two agents of one file; the second one's base is ``aside`` (m) to the right."""
+    """Return an execution with two agents of one file; the second one's base is ``aside`` (m) to the right.
+
+    With ``flanges``, the arms have no grippers, and the same gripper is mounted on each flange.
+    """
+    (folder / "fingers.xml").write_text(GRIPPER, encoding="utf-8")
+    arms = [ArmModel(tool=tool) for tool in tools] if flanges is None else [mounted(on=flange) for flange in flanges]
+    text = two_arms(beside, MJCF if flanges is None else BARE_OF_SIX)
     elements = tuple(
         Realisation(
             name,
             (
                 replace(
-                    source(folder, two_arms(beside), ArmModel(tool=tool)),
-                    iri=f"x:{tool}",
+                    source(folder, text, arm),
+                    iri=f"x:{place}",
                     bodies=((f"x:g.{place}", "torso"),),
                 ),
             ),
         )
-        for name, tool, place in ((LEFT, tools[0], "one"), (RIGHT, tools[1], "two"))
+        for name, arm, place in ((LEFT, arms[0], "one"), (RIGHT, arms[1], "two"))
     )
     places = (link("x:g.one.base", (0.0, 0.0, 0.15)), link("x:g.two.base", (0.0, -aside, 0.15)))
     run = ExecutionSpec(
@@ -131,6 +141,17 @@ def test_an_arm_parks_away_from_the_others_shoulder_where_both_sides_are_free(tm
 def test_the_same_arm_twice_overlaps(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="'env:left' and 'env:right' overlap by"):
         begun(tmp_path, ("l_hand", "l_hand"))
+
+
+def test_each_arm_of_a_robot_may_get_a_gripper_from_another_file(tmp_path: Path) -> None:
+    simulation = begun(tmp_path, flanges=("l_flange", "r_flange")).simulation
+    refuse_overlaps(simulation)
+    found = shaped(simulation.world)
+    assert found[LEFT] == found[RIGHT]
+    assert found[TORSO] == 5
+    assert [robot.model.joints[0] for robot in simulation.robots.values()] == ["l_yaw", "r_yaw"]
+    tools = [simulation.data.site_xpos[robot.tool] for robot in simulation.robots.values()]
+    assert [tool[1] for tool in tools] == pytest.approx([0.25, -0.25], abs=0.02)
 
 
 def test_robots_at_different_places_are_whole(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.gripper_names import name_in_file
+from robbdd_tools.world.gripper_names import MOUNT, name_in_file
 from robbdd_tools.world.srdf_semantics import path_to
 
 if TYPE_CHECKING:
@@ -40,12 +40,13 @@ def chain_to_palm(spec: Any, source: ModelSource, arm: ArmModel) -> Chain:
 
     Without stated faces, the palm is the first body with several jointed branches of which none leads to a hand, or
     else the last body, but no body beyond the stated tool. If the last body is a jaw, the palm is the body before it.
-    Of several hands, the one that carries the tool is chosen.
+    Of several hands, the one that carries the tool or the mounted gripper is chosen.
     """
     tool = path_to(body_of(spec, source.gripper or source, arm.tool, "tool")) if arm.tool else []
     carriers = [spec.geom(pad).parent if spec.geom(pad) is not None else spec.body(pad) for pad in arm.pads]
     paths = [[str(body.name) for body in path_to(one)] for one in carriers if one is not None]
-    named = [str(one.name) for one in tool] or (paths[0] if paths else [])
+    mount = [str(one.name) for one in path_to(spec.body(MOUNT))] if arm.mounted is not None else []
+    named = [str(one.name) for one in tool] or (paths[0] if paths else mount)
     bodies, beside = _descent(spec, source, named)
     if len(paths) > 1 and len(paths) == len(arm.pads):
         common = [name for name in paths[0] if all(name in path for path in paths)]

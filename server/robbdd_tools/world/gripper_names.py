@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 PREFIX = "mounted-gripper/"
 """Begins the names of a mounted gripper's parts: both files may have a ``base``, and some arms a ``gripper/base``."""
 
+MOUNT = f"{PREFIX}robbdd-mount"
+"""The body that carries the mounted gripper."""
+
 
 def name_in_file(name: str) -> str:
     """Return the name that a part of an arm or of its mounted gripper has in its file."""

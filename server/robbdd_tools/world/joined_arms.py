@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.file_contents import drop_dangling
+from robbdd_tools.world.gripper_names import PREFIX
 from robbdd_tools.world.mobile_base import base_of
 from robbdd_tools.world.robot_specs import load_robot
 from robbdd_tools.world.scene import local_name
@@ -97,7 +98,8 @@ def _is_joined(agents: Mapping[str, RobotModel], bases: Mapping[str, Pose], one:
     places = [np.array([*pose.position, pose.yaw, *(pose.rotation or (1.0, 0.0, 0.0, 0.0))]) for pose in poses]
     if np.abs(places[0] - places[1]).max() > SAME or models[0].mjcf in ("", models[1].mjcf):
         return False
-    return set(_bodies(models[0])).isdisjoint(_bodies(models[1]))
+    one_arm, other_arm = ({body for body in _bodies(model) if not body.startswith(PREFIX)} for model in models)
+    return one_arm.isdisjoint(other_arm)
 
 
 def _bodies(robot: RobotModel) -> tuple[str, ...]:

@@ -12,15 +12,13 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import give_mass, leave_out_scene, name_parts
 from robbdd_tools.world.frames import PoseError
-from robbdd_tools.world.gripper_names import PREFIX
+from robbdd_tools.world.gripper_names import MOUNT, PREFIX
 from robbdd_tools.world.model_files import compiled, load, path_of
 from robbdd_tools.world.urdf_files import is_urdf, massless_links
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource, MountedGripper
-
-_MOUNT = f"{PREFIX}robbdd-mount"
 
 
 def mount_gripper(spec: Any, source: ModelSource) -> list[str]:
@@ -54,7 +52,7 @@ def mount_gripper(spec: Any, source: ModelSource) -> list[str]:
         child.delete(key)
     place, turn = _pose(compiled(spec, source), mounted)
     # A body of its own keeps the mass of shapes that are fixed to the world of the gripper's file.
-    mount = carrier.add_body(name=_MOUNT, pos=place, quat=turn)
+    mount = carrier.add_body(name=MOUNT, pos=place, quat=turn)
     spec.attach(child, prefix=PREFIX, frame=mount.add_frame())
     return changes
 
