@@ -181,6 +181,30 @@ async def test_ctrl_c_ends_the_session_while_the_client_stays_connected(wire: Wi
     assert await wire.ended() == (1, "")
 
 
+SLEEPING = """import asyncio, signal, threading, time
+from robbdd_tools.lsp.transport import end_after_loop
+
+def interrupt():
+    time.sleep(0.5)  # The loop waits by then. A signal that another thread gets does not wake it.
+    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+async def main():
+    threading.Thread(target=interrupt).start()
+    await end_after_loop(lambda: 7)
+
+try:
+    asyncio.run(main())
+except KeyboardInterrupt:
+    print("ended")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there, signals wake the loop")
+def test_ctrl_c_is_noticed_by_a_loop_that_waits_for_nothing_else() -> None:
+    done = subprocess.run([sys.executable, "-c", SLEEPING], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "ended\n", "")
+
+
 async def test_a_session_that_begins_with_nonsense_is_told_so_and_may_begin_again(wire: Wire) -> None:
     unreadable: tuple[object, ...] = (
         None,

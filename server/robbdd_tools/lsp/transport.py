@@ -14,6 +14,8 @@ from robbdd_tools.base.limits import MESSAGE_SIZE
 
 LONGEST_HEADER = 4096
 """Maximum bytes of a header line; the protocol has no longer ones."""
+WAKING_SECONDS = 1.0
+"""Maximum seconds until the event loop notices a signal."""
 EXIT_SECONDS = 5.0
 """Seconds that threads have to end after the client has gone or has sent ``exit``."""
 _CHUNK = 1 << 16
@@ -124,11 +126,13 @@ def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
 async def end_after_loop(code: Callable[[], int]) -> None:
     """Make sure that the process ends soon after the event loop, whether by ``exit``, Ctrl-C or the client's end.
 
-    The loop waits for its tasks, but a task that is starting a process may never end (CPython 3.11). ``code`` returns
+    The loop waits for its tasks, but a task that is starting a process may never end (CPython 3.11). It also notices a
+    Ctrl-C that comes right before it begins to wait only when it wakes, which it does regularly here. ``code`` returns
     the exit code.
     """
     try:
-        await asyncio.Event().wait()
+        while True:
+            await asyncio.sleep(WAKING_SECONDS)
     finally:
         end_soon(code())
 
