@@ -69,6 +69,17 @@ def test_the_same_box_decides_in_simulation(tmp_path: Path) -> None:
     assert 0 < goal["robustness"] < 0.012
 
 
+@pytest.mark.parametrize("command", ["judge", "run"])
+def test_no_other_space_counts_in_place_of_an_impossible_box(command: str, tmp_path: Path) -> None:
+    box = "box { size: (1, 1, 1) m orientation: euler { angles: (0, 30) unit: deg } }"
+    path, out = with_boxes(tmp_path, box, named() if command == "judge" else HEAD + SIMULATED), tmp_path / "out.json"
+    chosen = () if command == "judge" else ("--where", "thing=cube0 and goal=left_ws")
+    robbdd(path.parent, command, "real.bddx", *chosen, "--no-store", "--json", str(out))
+    (goal,) = (one for one in clauses(out) if one["name"].endswith("at-goal"))
+    assert (goal["verdict"], goal["robustness"]) == ("unknown", None)
+    assert "a box of the workspace 'left_ws' needs an orientation that is a rotation" in json.dumps(goal)
+
+
 @pytest.mark.parametrize(
     ("box", "code", "message"),
     [

@@ -115,6 +115,15 @@ def test_a_gripper_from_a_file_of_its_own_is_fixed_to_the_arm(written: str, moun
     assert [(one.kind, one.name) for one in scene.sources][-1] == (mounted.kind, mounted.name)
 
 
+@pytest.mark.parametrize("written", ["euler { angles: (0, 30) unit: deg }", "quat { sample <tumble> }"])
+def test_an_orientation_that_is_no_rotation_is_kept_to_be_refused(written: str) -> None:
+    hand = f"{{ sys path = 'hand.xml' on: 'flange' orientation: {written} actuator: \"grip\""
+    text = SCENEX.replace("ORIENTATION", TURN).replace('{ actuator: "grip"', hand)
+    (mounted,) = [m.arm.mounted for one in instance_of(text).elements for m in one.models if m.arm is not None]
+    assert mounted is not None
+    assert mounted.rotation == (0.0, 0.0, 0.0, 0.0)
+
+
 def test_a_thing_that_opens_has_its_joint_and_positions_with_units() -> None:
     found = [model.opening for one in instance().elements for model in one.models if model.opening is not None]
     assert found == [OpeningModel("lid", "2 mm", "0.5 deg")]

@@ -169,6 +169,7 @@ def test_a_urdf_gripper_is_fixed_to_an_mjcf_arm(tmp_path: Path) -> None:
         (mounted(on="flang"), "arm.xml has no site or body 'flang' for the gripper; did you mean 'flange'"),
         (mounted(on="fore"), "'fore' of arm.xml carries the joints pitch, roll: fix the gripper to the end of the arm"),
         (mounted("gone.xml"), "there is no model file .*gone.xml"),
+        (mounted(rotation=(0.0, 0.0, 0.0, 0.0)), "the orientation of the gripper fingers.xml is not a rotation"),
         (mounted(position=(1.0, 2.0)), "the offset of the gripper fingers.xml needs 3 numbers, not 2"),
     ],
 )

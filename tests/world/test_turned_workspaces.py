@@ -22,6 +22,7 @@ from robbdd_tools.monitor.time import During
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.drawn_shapes import geometry
+from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import with_walls
 from robbdd_tools.world.placement import footprint
 from robbdd_tools.world.pose import Pose
@@ -185,6 +186,23 @@ def _inside(simulation: Simulation) -> bool:
 def boxed(scene: SceneSpec, *boxes: WorkspaceBox, seed: int = 1) -> Simulation:
     """Return a world whose workspaces are boxes that an executable scene states."""
     return Simulation(build_world(scene, seed, None, replace(instance(), boxes=boxes)))
+
+
+@pytest.mark.parametrize(
+    ("offset", "size", "turn", "message"),
+    [
+        ((0.0, 0.0), (0.1, 0.1, 0.1), (), "needs 3 numbers for its centre and 3 edges greater than 0"),
+        ((0.0, 0.0, 0.0), (0.1, 0.1), (), "needs 3 numbers for its centre and 3 edges greater than 0"),
+        ((0.0, 0.0, 0.0), (0.1, 0.0, 0.1), (), "needs 3 numbers for its centre and 3 edges greater than 0"),
+        ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (0.0, 0.0, 0.0, 0.0), "needs an orientation that is a rotation"),
+        ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (1.0, 0.0, 0.0), "needs an orientation that is a rotation"),
+    ],
+)
+def test_an_impossible_box_is_refused_instead_of_ignored(
+    offset: tuple[float, ...], size: tuple[float, ...], turn: tuple[float, ...], message: str
+) -> None:
+    with pytest.raises(SceneError, match=message):
+        boxed(SCENE, WorkspaceBox(BIN_WS, offset, size, turn))
 
 
 def inside_of(simulation: Simulation, workspace: str, point: ArrayLike) -> np.ndarray:

@@ -12,6 +12,8 @@ from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import Body, Link, SceneInstance
 
@@ -23,6 +25,11 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 class PoseError(SceneError):
     """A body has no pose because its frames are not connected to the world, or its pose cannot be determined."""
+
+
+def is_rotation(numbers: Sequence[float] | FloatArray) -> bool:
+    """Return whether numbers are a quaternion of a rotation: four, not all of them 0."""
+    return len(numbers) == 4 and bool(np.any(numbers))
 
 
 class Frames:
@@ -100,7 +107,7 @@ class Frames:
         rotation = np.array(link.rotation)
         if link.rotation_law:
             rotation = _rotation(self._drawn(link.rotation_law, f"{link.frame} turn {salt}"), link)
-        if len(rotation) != 4:
+        if not is_rotation(rotation):
             raise PoseError("the orientation is not a rotation", origin=link.origin)
         return position, rotation
 

@@ -11,7 +11,7 @@ from robbdd_tools.world.arm_chain import body_of
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import give_mass, leave_out_scene, name_parts
-from robbdd_tools.world.frames import PoseError
+from robbdd_tools.world.frames import PoseError, is_rotation
 from robbdd_tools.world.gripper_names import MOUNT, PREFIX
 from robbdd_tools.world.model_files import compiled, load, path_of
 from robbdd_tools.world.urdf_files import is_urdf, massless_links
@@ -33,6 +33,8 @@ def mount_gripper(spec: Any, source: ModelSource) -> list[str]:
     if len(mounted.position) != 3:
         text = f"the offset of the gripper {gripper.name} needs 3 numbers, not {len(mounted.position)}"
         raise PoseError(text, origin=source.origin)
+    if not is_rotation(mounted.rotation):
+        raise PoseError(f"the orientation of the gripper {gripper.name} is not a rotation", origin=source.origin)
     carrier = body_of(spec, source, mounted.mount, "gripper")
     beyond = [str(joint.name) for body in carrier.find_all("body") for joint in body.joints]
     if beyond:

@@ -65,8 +65,9 @@ def report(simulation: Simulation, name: str, source: ModelSource | None) -> Ite
         yield f"base: drives by the joints {', '.join(base.joints)}, at most with {limits}"
     yield f"home: {_origin_of_home(simulation, name, source)}"
     yield f"tool: {_tool(simulation, name)}"
-    if source is not None and source.gripper is not None and source.arm is not None and source.arm.mounted is not None:
-        yield f"gripper from {source.gripper.name}, fixed to '{source.arm.mounted.mount}'"
+    mounted = None if source is None or source.arm is None else source.arm.mounted
+    if mounted is not None:
+        yield f"gripper from {mounted.name}, fixed to '{mounted.mount}'"
     yield f"gripper: actuator '{name_in_file(robot.gripper_actuator)}', open at {robot.gripper_open:g}, closed at " + (
         f"{robot.gripper_closed:g}, {1000 * robot.stroke:.0f} mm {'across' if is_cup else 'wide'}"
     )

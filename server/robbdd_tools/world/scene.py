@@ -11,6 +11,7 @@ from robbdd_tools.catalog.object_settings import can_move, object_has
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError, SimulationError
 from robbdd_tools.world.extent import carrying, centred
+from robbdd_tools.world.frames import PoseError, is_rotation
 from robbdd_tools.world.openings import opening_of
 from robbdd_tools.world.resizing import extent_of
 from robbdd_tools.world.scene_configuration import Configured, configure
@@ -251,10 +252,11 @@ def _stated_regions(
 ) -> dict[str, tuple[tuple[str, Region], ...]]:
     """Return the regions of the workspaces whose boxes an executable scene states.
 
-    A box in a walled object, such as a bin, has its walls around it.
+    A box in a walled object, such as a bin, has its walls around it. Raises ``PoseError``.
     """
     found: dict[str, tuple[tuple[str, Region], ...]] = {}
     for box in stated:
+        _refuse_impossible(box)
         walled = any(region.walled for _, region in regions.get(box.workspace, ()))
         for carrier in carriers(scene, box.workspace):
             if carrier in objects:
@@ -262,6 +264,17 @@ def _stated_regions(
                 region = Region(vector(center), vector(edge / 2 for edge in box.size), walled=walled, turn=box.turn)
                 found[box.workspace] = (*found.get(box.workspace, ()), (carrier, region))
     return found
+
+
+def _refuse_impossible(box: WorkspaceBox) -> None:
+    """Raise ``PoseError`` for a box that is none: without it, other spaces of its workspace would count."""
+    if len(box.offset) != 3 or len(box.size) != 3 or min(box.size) <= 0.0:
+        lacks = "3 numbers for its centre and 3 edges greater than 0"
+    elif box.turn and not is_rotation(box.turn):
+        lacks = "an orientation that is a rotation"
+    else:
+        return
+    raise PoseError(f"a box of the workspace '{local_name(box.workspace)}' needs {lacks}", origin=box.origin)
 
 
 def vector(values: Iterable[float]) -> Vector:

@@ -246,14 +246,13 @@ class InstanceReader:
                 yield Friction(one, other, value, self._places(node))
 
     def _boxes(self, node: Iri) -> Iterator[WorkspaceBox]:
-        """Yield the spaces of a workspace. A box without three edges of a length is left out: a check reports it."""
+        """Yield the spaces of a workspace, also impossible ones."""
         records = self._records
         for workspace in records.iris(records.all(node, "rbw:realises")):
             for box in self._list(node, "rbw:boxes"):
                 offset, size = self._numbers(box, "rbw:position") or (0.0, 0.0, 0.0), self._numbers(box, "rbw:edges")
-                turn = self._numbers(box, "rbw:orientation") or ()
-                if len(offset) == len(size) == 3 and min(size) > 0:
-                    yield WorkspaceBox(workspace, offset, size, turn, self._places(box))
+                turn = self._numbers(box, "rbw:orientation")
+                yield WorkspaceBox(workspace, offset, size, turn, self._places(box))
 
     def _members(self, node: Iri) -> tuple[Iri, ...]:
         return tuple(entry for entry in self._sets.get(node, (node,)) if isinstance(entry, Iri))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.write.executions import add_python
 from robbdd_tools.graph.write.kinematics import Trees, TreeWriter
-from robbdd_tools.graph.write.rotations import numbers_of, rotation_of
+from robbdd_tools.graph.write.rotations import NO_ROTATION, numbers_of, rotation_of
 from robbdd_tools.graph.write.units import ANGLES, LENGTHS
 from robbdd_tools.syntax import tree
 
@@ -168,11 +168,12 @@ class _InstanceWriter:
         return node
 
     def _offset(self, node: URIRef, part: tree.WorkspaceBox | tree.Gripper) -> None:
-        """Write where a part is in the frame of another one."""
+        """Write where a part is in the frame of another one; ``NO_ROTATION`` if its orientation is none."""
         sink = self._sink
         self._lengths(node, "rbw:position", part.offset, part.offset_unit)
-        value = None if part.orientation is None else part.orientation.value
-        if value is not None and not isinstance(value, tree.Sample) and (turn := rotation_of(value)) is not None:
+        if part.orientation is not None:
+            value = part.orientation.value
+            turn = (None if isinstance(value, tree.Sample) else rotation_of(value)) or NO_ROTATION
             sink.add(node, "rbw:orientation", sink.make_list(map(sink.literal, turn)), self._frame.at(value))
 
     def _lengths(self, node: URIRef, term: str, vector: tree.Vector | None, unit: str | None) -> None:

@@ -13,6 +13,10 @@ _SAME = 1e-4
 """Maximum deviation of the dot products of direction cosines from those of orthogonal unit vectors."""
 
 
+NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 0.0)
+"""Stands for an orientation that is no rotation, so that a run refuses it instead of ignoring it."""
+
+
 def rotation_of(value: tree.Vector | tree.EulerAngles | tree.Axes) -> Quaternion | None:
     """Return the rotation that a value describes, or ``None`` if its numbers are not a rotation.
 
