@@ -51,6 +51,13 @@ def run_file(path: Path) -> list[str]:
     return forked(f"import runpy; runpy.run_path({str(path)!r}, run_name='__main__')")
 
 
+def run_module(name: str) -> list[str]:
+    """Return the command that runs a module of the tests in a fork."""
+    tests = str(Path(__file__).parent)
+    code = f"import runpy, sys; sys.path.insert(0, {tests!r}); runpy.run_module({name!r}, run_name='__main__')"
+    return forked(code) if CAN_FORK else [sys.executable, "-c", code]
+
+
 def _command(module: str) -> list[str]:
     if not CAN_FORK:
         return [sys.executable, "-m", module]

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Container, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -82,8 +83,14 @@ def modules() -> Iterator[tuple[str, Path]]:
         yield ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__"), path
 
 
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """Return all nodes of a file: to parse it takes longer than to check the rules."""
+    return tuple(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def imports(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -130,7 +137,7 @@ HUB_OF_THE_SERVER = "lsp.server"
 
 def imported_modules(path: Path, known: Container[str]) -> Iterator[str]:
     """Yield the modules of ours that a module imports, those for types and inside functions included."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.ImportFrom) and node.module:
             package = node.module.removeprefix("robbdd_tools.")
             for alias in node.names:
@@ -209,14 +216,13 @@ PLANNING = {"Scheduler", "RunRequest", "SpecWriter", "Recording", "Relations", "
 
 def plans(path: Path) -> Iterator[str]:
     """Yield the runtime imports of a module for planning or executing runs."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
     for_types = {
         id(node)
-        for block in ast.walk(tree)
+        for block in nodes(path)
         if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
         for node in ast.walk(block)
     }
-    for node in ast.walk(tree):
+    for node in nodes(path):
         if isinstance(node, ast.ImportFrom) and id(node) not in for_types:
             yield from PLANNING.intersection(alias.name for alias in node.names)
 
@@ -242,7 +248,7 @@ starts users' programs, which are users' code."""
 
 
 def started_processes(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Attribute) and ast.unparse(node) in STARTS_PROCESSES:
             yield ast.unparse(node)
         elif isinstance(node, ast.ImportFrom) and node.module in ("subprocess", "asyncio.subprocess", "os"):
@@ -280,7 +286,7 @@ def test_the_version_is_told_without_loading_anything() -> None:
 
 def prints(path: Path) -> Iterator[str]:
     """Return the calls with which a module prints: ``print``, a standard stream's ``write``, its own console."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Call):
             called = ast.unparse(node.func)
             if called in ("print", "sys.stdout.write", "sys.stderr.write", "Console") or called.endswith(".Console"):
@@ -311,7 +317,7 @@ SYSTEM_HOMES = {
 def system_specifics(path: Path) -> Iterator[str]:
     """Yield the modules and calls that only some operating systems have, and the questions which one it is."""
     yield from (name for name in imports(path) if name in SYSTEM_MODULES)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Attribute) and ast.unparse(node) in SYSTEM_CALLS | SYSTEM_NAMES:
             yield ast.unparse(node)
 
@@ -335,7 +341,7 @@ OPENS_ITSELF = {
 
 def opens(path: Path) -> Iterator[str]:
     """Yield the calls that open a file without the checks of ``base/files`` and ``base/writing``."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         match node:
             case ast.Call(func=ast.Attribute(attr="read_text" | "read_bytes" | "write_text" | "write_bytes")):
                 yield ast.unparse(node)

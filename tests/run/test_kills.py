@@ -8,32 +8,37 @@ import re
 import shutil
 import sqlite3
 import subprocess
-import sys
 from contextlib import closing
 from pathlib import Path
 from time import monotonic, sleep
 
+import pytest
+
+from fork_kit import run_module
 from robbdd_tools.run.store import FOLDER, NoSuchRun, RunStore, StoredRun
 from run.killed import BEGUN, COUNT, JOBS
 from run.recorded import rows
 
 KILLS = int(os.environ.get("ROBBDD_KILLS", "30"))
-DRIVER = Path(__file__).with_name("killed.py")
 SHOWN = re.compile(r"^e:v -- (\d+)  .*\n", re.MULTILINE)
 
 
 def start(folder: Path) -> subprocess.Popen[str]:
-    environment = {**os.environ, "PYTHONPATH": str(DRIVER.parents[1])}
-    command = [sys.executable, str(DRIVER), str(folder)]
+    command = [*run_module("run.killed"), str(folder)]
     # A file instead of a pipe: all output can be read after the process is gone.
     with (folder / "printed").open("w", encoding="utf-8") as printed:
-        return subprocess.Popen(command, stdout=printed, stderr=subprocess.STDOUT, env=environment, text=True)
+        return subprocess.Popen(command, stdout=printed, stderr=subprocess.PIPE, text=True)
+
+
+def ends(process: subprocess.Popen[str], seconds: float | None = None) -> None:
+    _, errors = process.communicate(timeout=seconds)
+    assert process.returncode == 0, errors
 
 
 def ends_within(process: subprocess.Popen[str], seconds: float) -> bool:
     """Return whether a process ends in time; else kill it."""
     try:
-        assert process.wait(seconds) == 0
+        ends(process, seconds)
     except subprocess.TimeoutExpired:
         _kill(process)
         return False
@@ -47,13 +52,13 @@ def ends_before(process: subprocess.Popen[str], folder: Path, results: int) -> b
             _kill(process)
             return False
         sleep(0.002)
-    assert process.returncode == 0
+    ends(process)
     return True
 
 
 def _kill(process: subprocess.Popen[str]) -> None:
     process.kill()
-    process.wait()
+    process.communicate()  # a fork ends a moment after what started it: until then it holds the pipe
 
 
 def printed(folder: Path) -> set[int]:
@@ -81,12 +86,13 @@ def check_integrity(database: Path) -> None:
         assert connection.execute("PRAGMA foreign_key_check").fetchall() == []
 
 
+@pytest.mark.usefixtures("forks")
 def test_killed_runs_lose_nothing_and_end_as_if_they_had_not_been(tmp_path: Path) -> None:
     chance = random.Random(4)
     whole = tmp_path / "whole"
     whole.mkdir()
     began = monotonic()
-    assert start(whole).wait() == 0
+    ends(start(whole))
     longest = monotonic() - began
     assert printed(whole) == set(range(COUNT))
     (run,) = RunStore(whole / FOLDER).runs()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,8 @@ LEVEL = 0.95
 """Default confidence level of an interval."""
 _EDGE = 1e-12
 """Distance that is kept from a change at which the statistic is not defined."""
+_remembered = lru_cache(maxsize=10_000)
+"""Of a function of counts: a study's tables and a comparison's clauses ask for the same ones again and again."""
 
 
 class StatisticsNotInstalled(RobbddError):
@@ -50,6 +53,7 @@ def _module(name: str) -> ModuleType:
         raise StatisticsNotInstalled from error
 
 
+@_remembered
 def rate_interval(holding: int, total: int, level: float = LEVEL, *, exact: bool = False) -> Interval:
     """Return the interval of a pass rate: Wilson's (1927), or with ``exact`` that of Clopper and Pearson (1934).
 
@@ -61,6 +65,7 @@ def rate_interval(holding: int, total: int, level: float = LEVEL, *, exact: bool
     return Interval(float(found.low), float(found.high))
 
 
+@_remembered
 def paired_interval(gained: int, lost: int, pairs: int, level: float = LEVEL) -> Interval:
     """Return the interval of the difference of two pass rates of the same ``pairs`` of executions.
 
@@ -97,6 +102,7 @@ def _score(change: float, gained: int, lost: int, pairs: int) -> float:
     return (gained - lost - pairs * change) / math.sqrt(max(variance, _EDGE))
 
 
+@_remembered
 def paired_probability(gained: int, lost: int) -> float:
     """Return the p-value of McNemar's exact test that gains and losses are equally probable; 1 without flips."""
     if gained + lost == 0:
@@ -118,6 +124,7 @@ def separate_interval(before: tuple[int, int], after: tuple[int, int], level: fl
     return Interval(new - old - low, new - old + high)
 
 
+@_remembered
 def separate_probability(before: tuple[int, int], after: tuple[int, int]) -> float:
     """Return the p-value of Fisher's exact test that two independent runs have the same pass rate."""
     table = [[count, total - count] for count, total in (before, after)]
