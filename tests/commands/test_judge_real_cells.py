@@ -145,7 +145,8 @@ def test_a_scenex_gives_a_scenario_its_models(tmp_path: Path) -> None:
         messages.append(transform("plinth", (0.5, 0.0, 0.8), stamp=tick / 50))
     write(tmp_path / "drive", messages)
     without = robbdd(tmp_path, "judge", "drive", "gizmo.bdd", "--no-store")
-    assert "there is no model for" in without.stdout + without.stderr
+    assert "is not known: state its box in a .scenex" in without.stdout
+    assert "plinth has no model" in without.stderr
     done = robbdd(
         tmp_path, "judge", "drive", "gizmo.bdd", "--scenex", "cell.scenex", "--no-store", "--json", "out.json"
     )

@@ -22,7 +22,7 @@ from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.parsed import Parsed
 from robbdd_tools.syntax.split import split
 
-SAMPLE = 23
+SAMPLE = 61
 """One of this many boundaries is tried in each run of the tests; a prime, so that no construct is always left out."""
 TOKEN = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|[\w\-.]+|\S")
 UNKNOWN = "zzunknown"

@@ -36,7 +36,7 @@ LENGTH = 16
 
 def _texts() -> list[dict[str, str]]:
     """Pairs of model and scene that users would have open together: ours, and foreign ones if available."""
-    pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}, {"main.bdd": long_story(120), "lab.scene": SCENE}]
+    pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}, {"main.bdd": long_story(40), "lab.scene": SCENE}]
     folder = EXAMPLES / "pickplace"
     pairs.append({path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.[bs]*"))})
     corpus = os.environ.get("ROBBDD_CORPUS")

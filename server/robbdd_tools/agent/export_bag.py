@@ -20,7 +20,7 @@ def _main() -> int:
     spec = read_manifest(folder).scenarios[index]
     try:
         staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
-        cast = cast_scene(spec.scene, staging)
+        cast = cast_scene(spec.scene, staging, of_log=True)
         frames = {name: model.frame for name, model in cast.objects.items()}
         path = trace_file(folder, index)
         views = read_views(path, ["/joints", "/geometry", "/tf"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
@@ -56,14 +56,15 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 
     Positions are in the frame of the world; the origin of a frame is the origin of the element's model. The trace has a
     sample at each observation of a used frame (at most ``request.rate`` per second), at each event and in each gap. A
-    value is NaN where nothing was observed. Raises ``SceneError`` if an element has no model, and ``NoElement`` or
-    ``NoGripSignal`` if the request names something that does not exist.
+    value is NaN where nothing was observed. An element without a model is a point. Raises ``SceneError`` for an
+    impossible scene, and ``NoElement`` or ``NoGripSignal`` if the request names something that does not exist.
     """
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
-    cast = cast_scene(spec.scene, staging)
+    cast = cast_scene(spec.scene, staging, of_log=True)
     remarks = list(contents.remarks)
     events = _events(spec, contents, remarks)
-    elements = (*cast.objects, *cast.agents)
+    elements = (*cast.objects, *cast.agents, *cast.points)
+    objects, agents = (*cast.objects, *cast.points_of("object")), (*cast.agents, *cast.points_of("agent"))
     arms = find_arms(cast, contents, request, remarks)
     frames = Frames(spec, cast, contents, request, remarks, arms)
     grips, signals = LogGrips(cast, contents, frames.of, request.max_gap), grip_signals(request.grips, cast)
@@ -109,12 +110,22 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         joint_clearances={
             agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
         },
-        stated=tuple(name for name in known if name in cast.objects and frames.is_stated(name)),
-        immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.agents),
+        stated=tuple(name for name in known if name in objects and frames.is_stated(name)),
+        immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *agents),
     )
-    remarks += far_apart(trace)
+    remarks += (*frames.steps(), *_shapes(cast, known), *far_apart(trace))
     trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
+
+
+def _shapes(cast: Cast, known: Collection[str]) -> Iterator[str]:
+    """Yield sentences about the observed elements whose shape is guessed or unknown."""
+    guessed = [f"{name} as {cast.objects[name].name}" for name in cast.by_name if name in known]
+    if guessed:
+        yield f"models of the catalog, by name: {', '.join(guessed)}; state others in a .scenex"
+    for name in cast.points:
+        if name in known:
+            yield f"{name} has no model: it is the point at its frame, and what depends on its shape is unknown"
 
 
 def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.log_mappers import mapped_frames
+from robbdd_tools.agent.log_steps import steps_of_frames
 from robbdd_tools.catalog.base_frames import BASE_FRAMES
 from robbdd_tools.logs.log_contents import Track
 from robbdd_tools.logs.log_names import (
@@ -26,7 +27,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.logs.log_contents import LogContents
@@ -65,13 +66,14 @@ class Frames:
         self._remarks = remarks
         self.of: dict[str, str] = {}
         """Frame of each element."""
-        elements = (*cast.objects, *cast.agents)
+        elements = (*cast.objects, *cast.agents, *cast.points)
+        self._agents = {*cast.agents, *cast.points_of("agent")}
         mapped = mapped_frames(spec, contents.tracks, elements)
         stated = {**mapped, **stated_frames(spec), **elements_of(request.frames, elements)}
         problems: dict[str, str] = {}
         for element in elements:
             try:
-                found = tool_frame_of if element in cast.agents else frame_of
+                found = tool_frame_of if element in self._agents else frame_of
                 self.of[element] = frame = found(element, contents.tracks, stated)
                 if {element, local_name(element)}.isdisjoint(stated) and "/" in frame:
                     remarks.append(f"{element} is the frame '{frame}'")
@@ -95,6 +97,11 @@ class Frames:
         found = sorted(reached((*self.of.values(), *self._bases.values()), self._tracks))
         used = [one for frame in found for one in (self._tracks[frame], *self._tracks[frame].later)]
         return [track.times for track in used if not track.static]
+
+    def steps(self) -> Iterator[str]:
+        """Yield a remark on each frame above an agent that steps."""
+        used = [self.of[agent] for agent in sorted(self._agents) if agent in self.of]
+        yield from steps_of_frames([*used, *self._bases.values()], self._tracks, self._world)
 
     def is_stated(self, element: str) -> bool:
         """Return whether the place of an element is stated, by static transforms or the ``.scenex``, not observed.
@@ -232,7 +239,7 @@ class Frames:
             return
 
     def _is_fixed_to_agent(self, frame: str) -> bool:
-        agents = [*(self.of[name] for name in self._cast.agents if name in self.of), *self._bases.values()]
+        agents = [*(self.of[name] for name in self._agents if name in self.of), *self._bases.values()]
         carrying = {*reached(agents, self._tracks)}
         while frame in self._tracks and self._tracks[frame].static:
             frame = self._tracks[frame].parent

@@ -30,8 +30,9 @@ def grip_signals(declared: Iterable[str], cast: Cast) -> tuple[GripSignal, ...]:
     found: list[GripSignal] = []
     for text in declared:
         one = read_grip_signal(text)
-        (agent,) = elements_of({one.agent: ""}, cast.agents)
-        held = next(iter(elements_of({one.held: ""}, cast.objects)), "") if one.held else ""
+        (agent,) = elements_of({one.agent: ""}, (*cast.agents, *cast.points_of("agent")))
+        things = (*cast.objects, *cast.points_of("object"))
+        held = next(iter(elements_of({one.held: ""}, things)), "") if one.held else ""
         found.append(GripSignal(agent, held, one.kind, one.source, one.low, one.high))
     return tuple(found)
 
@@ -63,7 +64,7 @@ class LogGrips:
         is the one at whose surface the tool is; if there are several, it is unknown which one.
         """
         found: dict[str, FloatArray] = {}
-        for agent in self._cast.agents:
+        for agent in (*self._cast.agents, *self._cast.points_of("agent")):
             own = [one for one in signals if one.agent == agent]
             if own:
                 found[agent] = self._declared(agent, own, names, times, poses)
@@ -99,6 +100,9 @@ class LogGrips:
         """Return 1 where the tool is at an object that can be held, 0 where not, NaN if unknown, (count, names)."""
         near = np.zeros((count, len(names)))
         for column, name in enumerate(names):
+            if self._cast.points.get(name) == "object":  # nobody knows how large it is
+                near[:, column] = np.nan
+                continue
             model = self._cast.objects.get(name)
             if model is None or not model.free:
                 continue

@@ -84,10 +84,9 @@ def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
 
     The position of a workspace is the position of its first region.
     """
-    regions = dict(zip(evidence.workspaces, map(evidence.regions, evidence.workspaces), strict=True)).get(target)
-    if not regions:
+    if target not in evidence.workspaces:
         return evidence.position_at(target, stamps)
-    carrier, region = regions[0]
+    carrier, region = evidence.regions(target)[0]
     return out_of_frame(region.center, evidence.position_at(carrier, stamps), evidence.orientation_at(carrier, stamps))
 
 

@@ -153,7 +153,7 @@ def _path(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Reg
 
 def _carriers(name: str, regions: Regions) -> list[str]:
     """Return the objects that carry a workspace, or else the element itself."""
-    return [carrier for carrier, _ in regions[name]] if name in regions else [name]
+    return [carrier for carrier, _ in regions.get(name, ())] or [name]
 
 
 def _narrowed(verdict: Verdict, bound: float | str) -> Verdict:

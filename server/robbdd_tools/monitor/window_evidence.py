@@ -218,8 +218,14 @@ class WindowEvidence:
         return name in self.trace.immovable
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """Return the regions of a workspace. Raises ``KeyError`` if the workspace has none in the scene."""
-        return self.regions_of[workspace]
+        """Return the regions of a workspace.
+
+        Raises ``KeyError`` if the workspace has none in the scene, and ``Unobserved`` if only its carriers are known.
+        """
+        found = self.regions_of[workspace]
+        if not found:
+            raise Unobserved(f"where {workspace} is, is not known: state its box in a .scenex")
+        return found
 
     def contents(self, workspace: str) -> Sequence[str]:
         """Return the names of the workspaces inside a workspace, at any depth."""

@@ -18,7 +18,7 @@ from robbdd_tools.world.scene_configuration import Configured, configure
 from robbdd_tools.world.table_rise import rise_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Set
 
     from robbdd_tools.base.articulation import Opening
     from robbdd_tools.catalog.api import ObjectModel, Vector
@@ -38,7 +38,7 @@ class Cast:
     """A scene with a model for every object and agent.
 
     - ``regions``: maps a workspace to its boxes, each with the object in whose frame the box is given. A workspace
-      without a carrier is absent.
+      without a carrier is absent; one whose carriers are all points has no box unless the executable scene states it.
     - ``ranges``: the areas in which some elements are laid out (``position_range``).
     - ``seed``: the seed that the scene sets, if any.
     - ``drops``: the heights (m) from which some elements are dropped (``drop_height``).
@@ -63,6 +63,14 @@ class Cast:
     """Width along x and height (m) of each object before it is scaled."""
     openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
     """How each thing with a joint opens, or the reason why this is not known."""
+    points: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Elements of a log that have no model, each of them ``object`` or ``agent``: points at their frames."""
+    by_name: tuple[str, ...] = ()
+    """Objects with a model of the catalog that only their name tells."""
+
+    def points_of(self, kind: str) -> tuple[str, ...]:
+        """Return the objects (``object``) or the agents (``agent``) among the points."""
+        return tuple(name for name, own in self.points.items() if own == kind)
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
         """Return the pose of an object's centre in an executable scene; raises ``SceneError``."""
@@ -104,24 +112,29 @@ def local_name(curie: str) -> str:
     return curie.rpartition(":")[2]
 
 
-def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
+def cast_scene(scene: SceneSpec, staging: Staging | None = None, *, of_log: bool = False) -> Cast:
     """Choose models for the elements of a scene, and configure them.
 
-    Models are from the executable scene, or else from the catalog by name. Raises ``SceneError`` for a name without a
-    model and for an impossible configuration.
+    Models are from the executable scene, or else from the catalog by name. In a log, an element may do without
+    (``Cast.points``). Raises ``SceneError`` for any other name without a model and for an impossible configuration.
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
     left_out: list[str] = []
+    points: dict[str, str] = {}
+    by_name: list[str] = []
     # Sorted: results must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects) if staging is None else staging.carriers_first(scene.objects):
         carries = any(name in own for own in scene.workspaces.values())
         model = None if staging is None else staging.object_model(name, carries)
-        model = model or catalog.object_for(local_name(name), scene.sets.get(name, ()))
+        if model is None and (model := catalog.object_for(local_name(name), scene.sets.get(name, ()))) is not None:
+            by_name.append(name)
         if model is not None:
             objects[name] = model
         elif name in scene.unused:
             left_out.append(name)
+        elif of_log:
+            points[name] = "object"
         else:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
     rise = 0.0 if staging is None else rise_of(objects, staging.pose)
@@ -131,6 +144,9 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         # Bystanders are present only where an executable scene places them.
         if name in scene.unused and (model is None or staging is None or staging.base(name) is None):
             left_out.append(name)
+            continue
+        if model is None and of_log:
+            points[name] = "agent"
             continue
         if model is None:
             raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.agents)))
@@ -146,15 +162,16 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         openings = dict(staging.openings())
     _add_moving(objects, openings)
     objects |= {name: carrying(objects[name]) for name in _bare_carriers(scene, objects)}
-    if all(can_move(model) or model.bystander for model in objects.values()):
+    if not of_log and all(can_move(model) or model.bystander for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
     stated = tuple(_stated(scene, objects))
     extents = {name: extent_of(model) for name, model in objects.items()}
-    found = Configured(objects, agents, openings)
+    found = Configured(objects, agents, openings, points)
     configure(found, ((config, _elements(scene, config.target)) for config in (*scene.config, *stated)))
     objects |= {name: centred(model) for name, model in objects.items()}
-    regions = _regions(scene, objects)
-    regions |= _stated_regions(scene, objects, regions, () if staging is None else staging.boxes)
+    regions = _regions(scene, objects, points.keys())
+    frames = {**dict.fromkeys(points, (0.0, 0.0, 0.0)), **{name: model.frame for name, model in objects.items()}}
+    regions |= _stated_regions(scene, frames, regions, () if staging is None else staging.boxes)
     return Cast(
         objects,
         agents,
@@ -168,6 +185,8 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         tuple(left_out),
         extents,
         openings,
+        points,
+        tuple(by_name),
     )
 
 
@@ -228,39 +247,42 @@ def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
     )
 
 
-def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, tuple[tuple[str, Region], ...]]:
+def _regions(
+    scene: SceneSpec, objects: Mapping[str, ObjectModel], points: Set[str]
+) -> dict[str, tuple[tuple[str, Region], ...]]:
     regions: dict[str, tuple[tuple[str, Region], ...]] = {}
     for workspace in {**scene.workspaces, **scene.contains}:
         boxes: list[tuple[str, Region]] = []
         for carrier in carriers(scene, workspace):
             model = objects.get(carrier)
-            if carrier in scene.unused and model is None:
+            if model is None and (carrier in scene.unused or carrier in points):
                 continue
             if model is None:
                 raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
             boxes += _spaces(carrier, local_name(workspace), objects)
-        if boxes:
+        if boxes or not points.isdisjoint(carriers(scene, workspace)):
             regions[workspace] = tuple(boxes)
     return regions
 
 
 def _stated_regions(
     scene: SceneSpec,
-    objects: Mapping[str, ObjectModel],
+    frames: Mapping[str, Vector],
     regions: Mapping[str, tuple[tuple[str, Region], ...]],
     stated: Iterable[WorkspaceBox],
 ) -> dict[str, tuple[tuple[str, Region], ...]]:
     """Return the regions of the workspaces whose boxes an executable scene states.
 
-    A box in a walled object, such as a bin, has its walls around it. Raises ``PoseError``.
+    ``frames`` are the origins of the objects' frames (m), from their positions. A box in a walled object, such as a
+    bin, has its walls around it. Raises ``PoseError``.
     """
     found: dict[str, tuple[tuple[str, Region], ...]] = {}
     for box in stated:
         _refuse_impossible(box)
         walled = any(region.walled for _, region in regions.get(box.workspace, ()))
         for carrier in carriers(scene, box.workspace):
-            if carrier in objects:
-                center = tuple(one + other for one, other in zip(objects[carrier].frame, box.offset, strict=True))
+            if carrier in frames:
+                center = tuple(one + other for one, other in zip(frames[carrier], box.offset, strict=True))
                 region = Region(vector(center), vector(edge / 2 for edge in box.size), walled=walled, turn=box.turn)
                 found[box.workspace] = (*found.get(box.workspace, ()), (carrier, region))
     return found

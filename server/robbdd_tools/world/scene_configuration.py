@@ -36,12 +36,14 @@ class Configured:
     """Configured models of objects and agents, position ranges (m) and the seed, if any.
 
     ``drops`` are the heights (m) from which objects are dropped. ``chosen`` are configurations, by element and name,
-    that controllers and grippers read. ``judged`` are configurations that only change how the world is judged.
+    that controllers and grippers read. ``judged`` are configurations that only change how the world is judged, the only
+    ones that elements of a log without a model have: its ``points``.
     """
 
     objects: dict[str, ObjectModel]
     agents: dict[str, RobotModel]
     openings: Mapping[str, Opening | str] = field(default_factory=dict[str, "Opening | str"])
+    points: Mapping[str, str] = field(default_factory=dict[str, str])
     ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     drops: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     seed: int | None = None
@@ -74,6 +76,10 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
 
 
 def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
+    if element in found.points:
+        if found.points[element] == SETTINGS[config.name].judges:
+            found.judged[element, config.name] = value
+        return
     thing, robot = found.objects.get(element), found.agents.get(element)
     judged = {"agent": robot, "object": thing}.get(SETTINGS[config.name].judges)
     able = thing if thing is not None and object_has(thing, config.name) else None

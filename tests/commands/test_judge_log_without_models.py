@@ -1,0 +1,160 @@
+"""``robbdd judge LOG``: what has no model is the point at its frame; what depends on its shape or space is unknown."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from logs.bags import Message, text, transform, truth, write
+from logs.drives import clauses, robbdd
+
+pytestmark = pytest.mark.physics
+SCENE = """ns y = 'https://example.org/yard/'
+obj set (ns=y) loads { object gadget }
+obj set (ns=y) stops { object hub }
+ws set (ns=y) zones { workspace hub_ws }
+agn set (ns=y) fleet { agent rover }
+comp (ns=y) stop of ws <zones.hub_ws> { obj <stops.hub> }
+scene (ns=y) yard { obj set <loads> ws comp <stop> agn set <fleet> }
+"""
+MODEL = """import "yard.scene"
+ns y = 'https://example.org/yard/'
+Event (ns=y) evt-start
+Event (ns=y) evt-leave
+Event (ns=y) evt-arrive
+Event (ns=y) evt-end
+Scenario Template (ns=y) bring {
+    duration: from <evt-start> until <evt-end>
+    var load
+    var robot
+    Given:
+        (
+            whole: holds(<load> has config whole_object = WHOLE, before <evt-leave>)
+            and fast: holds(<robot> has config max_speed = 0.6, before <evt-leave>)
+        )
+    When:
+        Behaviour (ns=y) drive {
+            duration: from <evt-leave> until <evt-arrive>
+            <robot> moves to <zones.hub_ws>
+        }
+    Then: (
+        there: holds(<load> is located at <zones.hub_ws>, after <evt-arrive>)
+        and inside: holds(<load> is entirely inside <zones.hub_ws>, after <evt-arrive>)
+        and slow: holds(<robot> moves slower than 0.6 m/s, from <evt-leave> until <evt-arrive>)
+        and safe: holds(<robot> moves safely, from <evt-leave> until <evt-arrive>)
+        and stays: holds(<robot> does not collide <stops.hub>, from <evt-leave> until <evt-arrive>)
+        and along: holds(<load> is nearer than 0.5 m to <robot>, from <evt-leave> until <evt-arrive>)
+        and clear: holds(<robot> keeps a distance of 0.1 m to <stops.hub>, from <evt-leave> until <evt-arrive>)
+        and taken: holds(<load> is held by <robot>, from <evt-leave> until <evt-arrive>)
+    )
+}
+User Story (ns=y) bringing {
+    As A "worker" I Want "loads to come" So That "I need not walk"
+    Scenarios:
+        Scenario to-hub {
+            template: <bring>
+            scene: <yard>
+            variation:
+                var <bring.load>: { <loads.gadget> }
+                var <bring.robot>: agn set <fleet>
+        }
+}
+"""
+SCENEX = """import "yard.scene"
+ns y = 'https://example.org/yard/'
+scene inst (ns=y) cell {
+    scene: <yard>
+    ws <zones.hub_ws> { box { offset: (0, 0, 0.5) m size: (1, 1, 1) m } }
+}
+"""
+BOXED = ("--scenex", "cell.scenex")
+KNOWN = ("--frame", "rover=rover/base_link")
+
+
+def drive(correction: float = 0.0) -> list[Message]:
+    """A robot brings a load to the hub, 4 m away, at 0.5 m/s from 1 s to 9 s.
+
+    At 5 s, its localisation has found that it is ``correction`` (m) farther than its odometry says.
+    """
+    found = [transform("hub", (4.0, 0.0, 0.0), stamp=0.0, topic="/tf_static")]
+    found += [text("leave", 1.0), text("arrive", 9.0), truth("/clamp", True, 0.0), truth("/clamp", False, 9.5)]
+    for tick in range(501):
+        time = tick / 50
+        way = 0.5 * min(max(time - 1.0, 0.0), 8.0)
+        shift = correction if time >= 5.0 else 0.0
+        found.append(transform("rover/odom", (shift, 0.0, 0.0), stamp=time))
+        found.append(transform("rover/base_link", (way - correction, 0.0, 0.0), stamp=time, parent="rover/odom"))
+        found.append(transform("gadget", (way, 0.0, 0.3), stamp=time))
+    return found
+
+
+def judged(folder: Path, messages: list[Message], *more: str, whole: bool = False) -> tuple[dict[str, Any], str]:
+    for name, content in (("yard.scene", SCENE), ("cell.scenex", SCENEX), ("yard.bdd", MODEL)):
+        (folder / name).write_text(content.replace("WHOLE", '"yes"' if whole else '"no"'), encoding="utf-8")
+    shutil.rmtree(folder / "bag", ignore_errors=True)
+    bag = write(folder / "bag", sorted(messages, key=lambda one: one.received))
+    done = robbdd(folder, "judge", str(bag), "yard.bdd", "--json", str(folder / "log.json"), *more)
+    assert done.returncode in (0, 1), done.stderr
+    return {one["name"].rpartition(".")[2]: one for one in clauses(folder / "log.json")}, done.stderr
+
+
+def verdicts(found: dict[str, Any]) -> dict[str, str]:
+    return {name: one["verdict"] for name, one in found.items() if name not in ("when", "whole", "fast")}
+
+
+def test_places_speeds_and_distances_are_judged_at_the_points_and_shapes_are_unknown(tmp_path: Path) -> None:
+    found, remarks = judged(tmp_path, drive(), *BOXED, *KNOWN)
+    known = dict.fromkeys(("there", "slow", "safe", "along"), "holds")
+    assert verdicts(found) == {**known, **dict.fromkeys(("inside", "clear", "taken", "stays"), "unknown")}
+    assert found["stays"]["reason"].startswith("the log does not observe y:hub")
+    assert found["there"]["robustness"] == pytest.approx(0.3)
+    assert "y:gadget has no model: it is the point at its frame" in remarks
+
+
+def test_the_box_of_a_workspace_whose_carrier_has_no_model_must_be_stated(tmp_path: Path) -> None:
+    found, _ = judged(tmp_path, drive(), *KNOWN)
+    assert found["there"]["reason"] == "where y:hub_ws is, is not known: state its box in a .scenex"
+
+
+def test_a_clause_about_a_whole_object_is_unknown_without_its_shape(tmp_path: Path) -> None:
+    found, _ = judged(tmp_path, drive(), *BOXED, *KNOWN, whole=True)
+    assert (found["there"]["verdict"], found["slow"]["verdict"]) == ("unknown", "holds")
+
+
+def test_a_base_is_not_taken_for_the_robot_without_being_named(tmp_path: Path) -> None:
+    found, remarks = judged(tmp_path, drive(), *BOXED)
+    assert (found["slow"]["verdict"], found["there"]["verdict"]) == ("unknown", "holds")
+    assert "several frames fit y:rover: rover/base_link, rover/odom; choose with --frame rover=FRAME" in remarks
+
+
+@pytest.mark.parametrize(
+    ("grip", "verdict"),
+    [("rover=/clamp", "unknown"), ("rover/gadget=/clamp", "holds"), ("rover/hub=/clamp", "violated")],
+)
+def test_what_a_signal_holds_must_be_named_if_shapes_are_unknown(tmp_path: Path, grip: str, verdict: str) -> None:
+    found, _ = judged(tmp_path, drive(), *BOXED, *KNOWN, "--grip", grip)
+    assert found["taken"]["verdict"] == verdict
+
+
+def test_steps_of_a_localisation_are_told_with_the_frame_in_which_speeds_are_right(tmp_path: Path) -> None:
+    found, remarks = judged(tmp_path, drive(0.2), *BOXED, *KNOWN)
+    assert found["slow"]["verdict"] == "violated"
+    assert "the frame 'rover/odom' steps in 'map' (by 200 mm and 0° at 5.00 s)" in remarks
+    found, remarks = judged(tmp_path, drive(0.2), *BOXED, *KNOWN, "--world", "rover/odom")
+    assert (found["slow"]["verdict"], "steps in" in remarks) == ("holds", False)
+
+
+def test_a_robot_that_drives_is_not_told_to_step(tmp_path: Path) -> None:
+    _, remarks = judged(tmp_path, drive(), *BOXED, *KNOWN)
+    assert "steps in" not in remarks
+
+
+def test_a_stored_log_without_models_is_judged_again_and_exported(tmp_path: Path) -> None:
+    found, _ = judged(tmp_path, drive(), *BOXED, *KNOWN)
+    again = robbdd(tmp_path, "judge", "latest", "yard.bdd", "--json", "again.json")
+    assert again.returncode == 1, again.stderr
+    assert [one["verdict"] for one in clauses(tmp_path / "again.json")] == [one["verdict"] for one in found.values()]
+    assert robbdd(tmp_path, "export", "latest", "--ros2", "-o", "back").returncode == 0
