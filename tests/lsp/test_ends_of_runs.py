@@ -54,10 +54,12 @@ async def test_a_change_of_the_database_shows_a_run_whose_own_files_are_not_watc
 async def test_a_run_that_ends_after_the_last_report_is_shown(window: Any, tmp_path: Path) -> None:
     model = project(tmp_path / "cell")
     opened = await window(model.parent)
+    assert await opened.verdicts() == {}  # the stores of the folder have been read
     record(model, -0.1)
     store = store_beside(model)
-    ended, lock = set_state(store, RUNNING), acquire(store.folder / "1" / LOCK)
+    lock = acquire(store.folder / "1" / LOCK)
     assert lock is not None
+    ended = set_state(store, RUNNING)
     report_database(opened, store)
     assert await opened.verdicts() == {}
     set_state(store, ended)

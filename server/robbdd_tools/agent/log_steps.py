@@ -25,13 +25,13 @@ def steps_of_frames(used: Iterable[str], tracks: Mapping[str, Track], world: str
 
     ``used`` are the frames of robots. Their speeds in the world are wrong at a step.
     """
-    told: set[str] = set()
+    reported: set[str] = set()
     for frame in used:
         moving = False
         while frame != world and frame in tracks:
             track = tracks[frame]
-            if moving and frame not in told and (steps := _steps(track)):
-                told.add(frame)
+            if moving and frame not in reported and (steps := _steps(track)):
+                reported.add(frame)
                 more = f", and {len(steps) - 1} more times" if len(steps) > 1 else ""
                 yield (
                     f"the frame '{frame}' steps in '{track.parent}' ({steps[0]}{more}), as a localisation does when it "
