@@ -75,3 +75,21 @@ def test_each_event_is_a_text_above_the_tool_at_its_time(bag: Path) -> None:
     events = [(time, one.data.rpartition(":")[2]) for time, one in messages(bag, "/events")]
     assert [(time, one.text) for time, one in shown] == events
     assert {one.header.frame_id for _, one in shown} == {"panda"}
+
+
+@pytest.mark.usefixtures("forks")
+def test_the_pedestal_of_a_scene_without_tables_has_the_frame_of_its_model(bag: Path, tmp_path: Path) -> None:
+    models = shutil.copytree(EXAMPLES / "pickplace", tmp_path / "models")
+    scene = (models / "bench.scene").read_text(encoding="utf-8")
+    for table in ("object table", "furniture.table"):
+        assert scene.count(table) == 1
+        scene = scene.replace(table, table.replace("table", "tray"))
+    (models / "bench.scene").write_text(scene, encoding="utf-8")
+    assert robbdd(models, "run", "pickplace.bdd", "--first", "1").returncode in (0, 1)
+    assert robbdd(models, "export", "latest", "--ros2", "-o", "bag").returncode == 0
+
+    def height(bag: Path, frame: str) -> float:
+        static = (one for _, message in messages(bag, "/tf", "/tf_static") for one in message.transforms)
+        return next(one.transform.translation.z for one in static if one.child_frame_id == frame)
+
+    assert height(models / "bag", "pedestal") == pytest.approx(height(bag, "table"), abs=1e-3)

@@ -13,10 +13,11 @@ from robbdd_tools.catalog.objects.bin import BIN as BIN_MODEL
 from robbdd_tools.catalog.objects.cube import CUBE as CUBE_MODEL
 from robbdd_tools.catalog.objects.table import TABLE
 from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
+from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.free_places import bearing
 from robbdd_tools.world.placement import Pose, arrange, field_before, footprint, mounts, surface
-from robbdd_tools.world.scene import Cast, cast_scene
+from robbdd_tools.world.scene import cast_scene
 from world.worlds import BALL, BENCH_WS, BIN, BIN_WS, CUBE, OTHER_BIN, PANDA, SCENE
 
 FRONT = Pose((0.0, 0.0, 0.15))

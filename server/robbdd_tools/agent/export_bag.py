@@ -20,12 +20,12 @@ def _main() -> int:
     spec = read_manifest(folder).scenarios[index]
     try:
         staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
-        cast = cast_scene(spec.scene, staging, of_log=True)
-        frames = {name: model.frame for name, model in cast.objects.items()}
         path = trace_file(folder, index)
+        trace = read_trace(path).trace
+        cast = cast_scene(spec.scene, staging, of_log=bool(trace.log))
+        frames = {name: model.frame for name, model in cast.objects.items()}
         views = read_views(path, ["/joints", "/geometry", "/tf"])
         scene = DrawnScene(views["/geometry"][0][1], views["/tf"]) if views["/geometry"] else None
-        trace = read_trace(path).trace
         write_ros2_bag(out, trace, frames, views["/joints"], scene=scene, mcap=storage == "mcap")
     except (RobbddError, SceneError, OSError) as error:
         print(error, file=sys.stderr)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, RobotModel
     from robbdd_tools.logs.log_contents import LogContents
     from robbdd_tools.protocol.log_request import LogRequest
-    from robbdd_tools.world.scene import Cast
+    from robbdd_tools.world.cast import Cast
 
 IMPOSSIBLE = np.pi
 """Positions farther (rad) beyond a limit are in another unit: no arm turns half a turn past its stop."""

@@ -25,8 +25,9 @@ from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.clauses import EventOccurrence
 from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.extent import outline_of
-from robbdd_tools.world.scene import Cast, cast_scene, contents_of
+from robbdd_tools.world.scene import cast_scene, contents_of
 from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
@@ -64,7 +65,6 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     remarks = list(contents.remarks)
     events = _events(spec, contents, remarks)
     elements = (*cast.objects, *cast.agents, *cast.points)
-    objects, agents = (*cast.objects, *cast.points_of("object")), (*cast.agents, *cast.points_of("agent"))
     arms = find_arms(cast, contents, request, remarks)
     frames = Frames(spec, cast, contents, request, remarks, arms)
     grips, signals = LogGrips(cast, contents, frames.of, request.max_gap), grip_signals(request.grips, cast)
@@ -110,8 +110,8 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         joint_clearances={
             agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
         },
-        stated=tuple(name for name in known if name in objects and frames.is_stated(name)),
-        immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *agents),
+        stated=tuple(name for name in known if name in cast.every_object and frames.is_stated(name)),
+        immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.every_agent),
     )
     remarks += (*frames.steps(), *_shapes(cast, known), *far_apart(trace))
     trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)

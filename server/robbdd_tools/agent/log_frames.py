@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from robbdd_tools.logs.log_contents import LogContents
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.world.cast import Cast
     from robbdd_tools.world.pose import Pose
-    from robbdd_tools.world.scene import Cast
 
 Poses = tuple["FloatArray", "FloatArray"]
 """Positions (n, 3) m in the frame of the world and orientations (n, 4), w first; NaN where unobserved."""
@@ -67,13 +67,12 @@ class Frames:
         self.of: dict[str, str] = {}
         """Frame of each element."""
         elements = (*cast.objects, *cast.agents, *cast.points)
-        self._agents = {*cast.agents, *cast.points_of("agent")}
         mapped = mapped_frames(spec, contents.tracks, elements)
         stated = {**mapped, **stated_frames(spec), **elements_of(request.frames, elements)}
         problems: dict[str, str] = {}
         for element in elements:
             try:
-                found = tool_frame_of if element in self._agents else frame_of
+                found = tool_frame_of if element in cast.every_agent else frame_of
                 self.of[element] = frame = found(element, contents.tracks, stated)
                 if {element, local_name(element)}.isdisjoint(stated) and "/" in frame:
                     remarks.append(f"{element} is the frame '{frame}'")
@@ -100,7 +99,7 @@ class Frames:
 
     def steps(self) -> Iterator[str]:
         """Yield a remark on each frame above an agent that steps."""
-        used = [self.of[agent] for agent in sorted(self._agents) if agent in self.of]
+        used = [self.of[agent] for agent in self._cast.every_agent if agent in self.of]
         yield from steps_of_frames([*used, *self._bases.values()], self._tracks, self._world)
 
     def is_stated(self, element: str) -> bool:
@@ -239,7 +238,7 @@ class Frames:
             return
 
     def _is_fixed_to_agent(self, frame: str) -> bool:
-        agents = [*(self.of[name] for name in self._agents if name in self.of), *self._bases.values()]
+        agents = [*(self.of[name] for name in self._cast.every_agent if name in self.of), *self._bases.values()]
         carrying = {*reached(agents, self._tracks)}
         while frame in self._tracks and self._tracks[frame].static:
             frame = self._tracks[frame].parent

@@ -15,7 +15,7 @@ from robbdd_tools.world.extent import outline_of
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Outline
     from robbdd_tools.logs.log_contents import LogContents, TextStamp
-    from robbdd_tools.world.scene import Cast
+    from robbdd_tools.world.cast import Cast
 
 HOLDS = "holds"
 """Last part of the topic that reports the name of the object an agent holds, or an empty text: ``/panda/holds``."""
@@ -30,9 +30,8 @@ def grip_signals(declared: Iterable[str], cast: Cast) -> tuple[GripSignal, ...]:
     found: list[GripSignal] = []
     for text in declared:
         one = read_grip_signal(text)
-        (agent,) = elements_of({one.agent: ""}, (*cast.agents, *cast.points_of("agent")))
-        things = (*cast.objects, *cast.points_of("object"))
-        held = next(iter(elements_of({one.held: ""}, things)), "") if one.held else ""
+        (agent,) = elements_of({one.agent: ""}, cast.every_agent)
+        held = next(iter(elements_of({one.held: ""}, cast.every_object)), "") if one.held else ""
         found.append(GripSignal(agent, held, one.kind, one.source, one.low, one.high))
     return tuple(found)
 
@@ -64,7 +63,7 @@ class LogGrips:
         is the one at whose surface the tool is; if there are several, it is unknown which one.
         """
         found: dict[str, FloatArray] = {}
-        for agent in (*self._cast.agents, *self._cast.points_of("agent")):
+        for agent in self._cast.every_agent:
             own = [one for one in signals if one.agent == agent]
             if own:
                 found[agent] = self._declared(agent, own, names, times, poses)

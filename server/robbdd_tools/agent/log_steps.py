@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.logs.log_contents import Track
 
+ODOMETRY = "odom"
 SHIFT, TURN = 0.02, radians(1.0)
 """A step moves a frame at least this far (m) or turns it by at least this angle (rad)."""
 REST = 0.1
@@ -21,24 +22,24 @@ REST = 0.1
 
 
 def steps_of_frames(used: Iterable[str], tracks: Mapping[str, Track], world: str) -> Iterator[str]:
-    """Yield a remark on each frame that steps between the world and a frame that moves by reports of its own.
+    """Yield a remark on each frame of an odometry that steps, above the frames of robots that are ``used``.
 
-    ``used`` are the frames of robots. Their speeds in the world are wrong at a step.
+    The frame has ``odom`` in its name (REP 105); the joints of an arm may step, too, but these move the robot. Speeds
+    in the world are wrong at a step of the odometry.
     """
-    reported: set[str] = set()
-    for frame in used:
-        moving = False
-        while frame != world and frame in tracks:
+    seen: set[str] = set()
+    for below in used:
+        frame = tracks[below].parent if below in tracks else world
+        while frame != world and frame in tracks and frame not in seen:
+            seen.add(frame)
             track = tracks[frame]
-            if moving and frame not in reported and (steps := _steps(track)):
-                reported.add(frame)
-                more = f", and {len(steps) - 1} more times" if len(steps) > 1 else ""
+            if ODOMETRY in frame.casefold() and (steps := _steps(track)):
+                more = f", and {len(steps) - 1} more" if len(steps) > 1 else ""
                 yield (
                     f"the frame '{frame}' steps in '{track.parent}' ({steps[0]}{more}), as a localisation does when it "
                     f"corrects where a robot is: speeds across a step are not the robot's; --world {frame} leaves the "
                     "steps out"
                 )
-            moving = moving or not track.static
             frame = track.parent
 
 
@@ -50,10 +51,13 @@ def _steps(track: Track) -> list[str]:
     products = np.abs(np.sum(track.orientations[1:] * track.orientations[:-1], axis=1))
     turns = 2.0 * np.arccos(np.clip(products, 0.0, 1.0))
     found = np.flatnonzero(_alone(shifts, SHIFT) | _alone(turns, TURN))
-    return [
-        f"by {1000 * shifts[row]:.0f} mm and {degrees(turns[row]):.0f}° at {track.times[row + 1]:.2f} s"
-        for row in found
-    ]
+    return [f"{_size(float(shifts[row]), float(turns[row]))} at {track.times[row + 1]:.2f} s" for row in found]
+
+
+def _size(shift: float, turn: float) -> str:
+    parts = [f"{1000 * shift:.0f} mm"] if shift >= SHIFT else []
+    parts += [f"{degrees(turn):.1f}°"] if turn >= TURN else []
+    return f"by {' and '.join(parts)}"
 
 
 def _alone(changes: FloatArray, least: float) -> NDArray[np.bool_]:

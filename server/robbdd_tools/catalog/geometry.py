@@ -62,13 +62,13 @@ def inside_margin(
     the parts that are inside other regions with a higher floor: an object on a shelf is on the shelf, not on the table
     below. The body's position counts. With an ``outline`` or the configuration ``whole_object``, its whole outline
     counts, except at the lowest face, which carries the body. Regions that the body itself carries are ignored. Raises
-    ``KeyError`` for a workspace without regions other than the body's own, and like ``whole``.
+    ``KeyError`` for a workspace without regions other than the body's own.
     """
     import numpy as np
 
     position = evidence.position(name)
     if outline is None:
-        outline = whole(evidence, name) if is_configured(evidence, name, "whole_object") else ()
+        outline = evidence.outline(name) if is_configured(evidence, name, "whole_object") else ()
     balls = [(out_of_frame(center, position, evidence.orientation(name)), radius) for center, radius in outline]
     own = _without(name, (place for workspace in workspaces for place in _space(evidence, workspace)))
     if not own:

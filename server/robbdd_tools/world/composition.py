@@ -14,6 +14,7 @@ from robbdd_tools.base.solid_shapes import Solid, SolidKind
 from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.belts import add_belt
+from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.friction import (
@@ -32,7 +33,7 @@ from robbdd_tools.world.owners import scenery_name, shape_name
 from robbdd_tools.world.passive_joints import add_joint, pose_at_zero
 from robbdd_tools.world.placement import FLOOR, TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robots_in_world import THINGS, add_robots, attach
-from robbdd_tools.world.scene import Cast, cast_scene
+from robbdd_tools.world.scene import cast_scene
 from robbdd_tools.world.solids import ENGINE
 from robbdd_tools.world.staging import Staging
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.standard_places import without_place
+from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.composition import World, compile_world
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import centred
 from robbdd_tools.world.frames import PoseError
 from robbdd_tools.world.model_files import usable
 from robbdd_tools.world.overlaps import refuse_overlaps
-from robbdd_tools.world.scene import Cast
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.staging import Staging
 from robbdd_tools.world.table_rise import rise_of

@@ -9,8 +9,8 @@ from robbdd_tools.world.working_area import before_base, place_before
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import SceneSpec
+    from robbdd_tools.world.cast import Cast
     from robbdd_tools.world.pose import Pose
-    from robbdd_tools.world.scene import Cast
 
 
 def laid_out(

@@ -20,8 +20,8 @@ from robbdd_tools.world.reaching import Approach, Obstruction, approaches_by
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.arm_control import ArmControl
+    from robbdd_tools.world.cast import Cast
     from robbdd_tools.world.gripper import Step
-    from robbdd_tools.world.scene import Cast
 
 SPEED = 0.15
 """Largest speed (m/s) of the tool while it holds a handle: people close doors and drawers at about this speed."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from robbdd_tools.protocol.specs import SceneSpec
-    from robbdd_tools.world.scene import Cast
+    from robbdd_tools.world.cast import Cast
 
 FLOOR = TABLE_TOP - HEIGHT
 """Height of the floor, m, world frame."""
