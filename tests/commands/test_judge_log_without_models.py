@@ -16,7 +16,7 @@ SCENE = """ns y = 'https://example.org/yard/'
 obj set (ns=y) loads { object gadget }
 obj set (ns=y) stops { object hub }
 ws set (ns=y) zones { workspace hub_ws }
-agn set (ns=y) fleet { agent rover, agent scout }
+agn set (ns=y) fleet { agent amr, agent scout }
 comp (ns=y) stop of ws <zones.hub_ws> { obj <stops.hub> }
 scene (ns=y) yard { obj set <loads> ws comp <stop> agn set <fleet> }
 """
@@ -61,7 +61,7 @@ User Story (ns=y) bringing {
             scene: <yard>
             variation:
                 var <bring.load>: { <loads.gadget> }
-                var <bring.robot>: { <fleet.rover> }
+                var <bring.robot>: { <fleet.amr> }
         }
 }
 """
@@ -73,7 +73,7 @@ scene inst (ns=y) cell {
 }
 """
 BOXED = ("--scenex", "cell.scenex")
-KNOWN = ("--frame", "rover=rover/base_link")
+KNOWN = ("--frame", "amr=amr/base_link")
 
 
 def drive(correction: float = 0.0) -> list[Message]:
@@ -87,8 +87,8 @@ def drive(correction: float = 0.0) -> list[Message]:
         time = tick / 50
         way = 0.5 * min(max(time - 1.0, 0.0), 8.0)
         shift = correction if time >= 5.0 else 0.0
-        found.append(transform("rover/odom", (shift, 0.0, 0.0), stamp=time))
-        found.append(transform("rover/base_link", (way - correction, 0.0, 0.0), stamp=time, parent="rover/odom"))
+        found.append(transform("amr/odom", (shift, 0.0, 0.0), stamp=time))
+        found.append(transform("amr/base_link", (way - correction, 0.0, 0.0), stamp=time, parent="amr/odom"))
         found.append(transform("gadget", (way, 0.0, 0.3), stamp=time))
         found.append(transform("scout", (2.0, 3.0, 0.0), stamp=time))
     return found
@@ -117,7 +117,8 @@ def test_places_speeds_and_distances_are_judged_at_the_points_and_shapes_are_unk
     assert verdicts(found) == {**known, **unknown}
     assert found["stays"]["reason"].startswith("the log does not observe y:hub")
     assert found["there"]["robustness"] == pytest.approx(0.3)
-    assert "y:gadget has no model: it is the point at its frame" in remarks
+    for name in ("gadget", "hub", "amr"):
+        assert f"y:{name} has no model: it is the point at its frame" in remarks
 
 
 def test_the_box_of_a_workspace_whose_carrier_has_no_model_must_be_stated(tmp_path: Path) -> None:
@@ -158,7 +159,7 @@ def test_a_clause_about_a_whole_object_is_unknown_without_its_shape(tmp_path: Pa
 
 def test_what_stands_on_the_robot_is_not_observed_to_be_pushed(tmp_path: Path) -> None:
     others = [one for one in drive() if one.topic != "/tf_static"]
-    carried = transform("hub", (0.0, 0.0, 0.2), stamp=0.0, topic="/tf_static", parent="rover/base_link")
+    carried = transform("hub", (0.0, 0.0, 0.2), stamp=0.0, topic="/tf_static", parent="amr/base_link")
     found, _ = judged(tmp_path, [carried, *others], *BOXED, *KNOWN)
     assert found["stays"]["reason"].startswith("the log does not observe y:hub")
 
@@ -171,17 +172,17 @@ def test_a_stated_uncertainty_needs_no_box(tmp_path: Path) -> None:
 def test_a_base_is_not_taken_for_the_robot_without_being_named(tmp_path: Path) -> None:
     found, remarks = judged(tmp_path, drive(), *BOXED)
     assert (found["slow"]["verdict"], found["there"]["verdict"]) == ("unknown", "holds")
-    assert "several frames fit y:rover: rover/base_link, rover/odom; choose with --frame rover=FRAME" in remarks
-    alone = [transform("rover/base_link", (tick / 100, 0.0, 0.0), stamp=tick / 50) for tick in range(501)]
+    assert "several frames fit y:amr: amr/base_link, amr/odom; choose with --frame amr=FRAME" in remarks
+    alone = [transform("amr/base_link", (tick / 100, 0.0, 0.0), stamp=tick / 50) for tick in range(501)]
     others = [text("leave", 1.0), text("arrive", 9.0)]
     found, remarks = judged(tmp_path, [*others, *alone], *BOXED)
     assert found["slow"]["verdict"] == "unknown"
-    assert "'rover/base_link' is the base of y:rover, and no frame has the name of its tool" in remarks
+    assert "'amr/base_link' is the base of y:amr, and no frame has the name of its tool" in remarks
 
 
 @pytest.mark.parametrize(
     ("grip", "verdict"),
-    [("rover=/clamp", "unknown"), ("rover/gadget=/clamp", "holds"), ("rover/hub=/clamp", "violated")],
+    [("amr=/clamp", "unknown"), ("amr/gadget=/clamp", "holds"), ("amr/hub=/clamp", "violated")],
 )
 def test_what_a_signal_holds_must_be_named_if_shapes_are_unknown(tmp_path: Path, grip: str, verdict: str) -> None:
     found, _ = judged(tmp_path, drive(), *BOXED, *KNOWN, "--grip", grip)
@@ -190,15 +191,15 @@ def test_what_a_signal_holds_must_be_named_if_shapes_are_unknown(tmp_path: Path,
 
 def test_a_table_that_a_simulation_would_add_is_no_element_of_a_log(tmp_path: Path) -> None:
     judged(tmp_path, drive(), *BOXED, *KNOWN)
-    done = robbdd(tmp_path, "judge", "bag", "yard.bdd", "--no-store", "--grip", "rover/pedestal=/clamp")
+    done = robbdd(tmp_path, "judge", "bag", "yard.bdd", "--no-store", "--grip", "amr/pedestal=/clamp")
     assert (done.returncode, "the scene has no element 'pedestal'; it has: gadget, hub" in done.stderr) == (2, True)
 
 
 def test_steps_of_a_localisation_are_told_with_the_frame_in_which_speeds_are_right(tmp_path: Path) -> None:
     found, remarks = judged(tmp_path, drive(0.2), *BOXED, *KNOWN)
     assert found["slow"]["verdict"] == "violated"
-    assert "the frame 'rover/odom' steps in 'map' (by 200 mm at 5.00 s)" in remarks
-    found, remarks = judged(tmp_path, drive(0.2), *BOXED, *KNOWN, "--world", "rover/odom")
+    assert "the frame 'amr/odom' steps in 'map' (by 200 mm at 5.00 s)" in remarks
+    found, remarks = judged(tmp_path, drive(0.2), *BOXED, *KNOWN, "--world", "amr/odom")
     assert (found["slow"]["verdict"], "steps in" in remarks) == ("holds", False)
 
 
