@@ -16,7 +16,7 @@ from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.rising_edges import rising_edges
 from robbdd_tools.monitor.time import Window
 from robbdd_tools.monitor.trace import Doubt, EventStamp
-from robbdd_tools.monitor.unobserved import Unobserved
+from robbdd_tools.monitor.unobserved import Unobserved, Unplaced
 from robbdd_tools.user_code.calls import fault_of
 
 if TYPE_CHECKING:
@@ -98,6 +98,8 @@ def _fill(
     """Write the margins in a window into ``margins``. A window with unobserved samples is divided around them."""
     try:
         margins[rows.first : rows.last + 1] = fluent_margins(fluent, WindowEvidence(trace, rows, regions))
+    except Unplaced as unplaced:
+        problems.append(str(unplaced))
     except Unobserved as gap:
         problems.append(str(gap))
         if rows.first < rows.last:

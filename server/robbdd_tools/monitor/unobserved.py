@@ -15,6 +15,13 @@ class Unobserved(Exception):
     """There is no observation on which to judge. The message gives the reason."""
 
 
+class Unplaced(Unobserved):
+    """At no sample is it known where a workspace is."""
+
+    def __init__(self, workspace: str) -> None:
+        super().__init__(f"where {workspace} is, is not known: state its box in a .scenex")
+
+
 def no_grip(agent: str, unseen: str) -> str:
     """Return why it is unknown what an agent holds; ``unseen`` names the body with missing poses, if any."""
     holder, thing = agent.rpartition(":")[2], unseen.rpartition(":")[2]

@@ -10,7 +10,7 @@ import numpy as np
 
 from robbdd_tools.monitor.paths import length_beyond_errors, path_length
 from robbdd_tools.monitor.time import TOLERANCE, Window
-from robbdd_tools.monitor.unobserved import Unobserved, gap_around, no_grip, path_of_errors
+from robbdd_tools.monitor.unobserved import Unobserved, Unplaced, gap_around, no_grip, path_of_errors
 from robbdd_tools.monitor.without_physics import need_contacts
 
 if TYPE_CHECKING:
@@ -220,11 +220,11 @@ class WindowEvidence:
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
         """Return the regions of a workspace.
 
-        Raises ``KeyError`` if the workspace has none in the scene, and ``Unobserved`` if only its carriers are known.
+        Raises ``KeyError`` if the workspace has none in the scene, and ``Unplaced`` if only its carriers are known.
         """
         found = self.regions_of[workspace]
         if not found:
-            raise Unobserved(f"where {workspace} is, is not known: state its box in a .scenex")
+            raise Unplaced(workspace)
         return found
 
     def contents(self, workspace: str) -> Sequence[str]:
