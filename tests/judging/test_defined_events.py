@@ -12,6 +12,7 @@ from robbdd_tools.judging.decisions import decide, is_closed, occurred
 from robbdd_tools.judging.defined_events import FROM_START, with_defined_events
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import OTHERS, EventStamp, Trace
+from robbdd_tools.monitor.window_evidence import WindowEvidence
 from robbdd_tools.protocol.clauses import DefinedEvent, Fluent
 
 NEAR = '"a" is nearer than "50 cm" to "b"'
@@ -121,3 +122,19 @@ def test_a_clause_is_open_as_long_as_its_event_may_still_occur() -> None:
     begun = replace(moving(LOW[:2]), finished=False)
     assert not is_closed(clause, with_defined_events(begun, (near(),), {}), {"t:near"})
     assert is_closed(clause, with_defined_events(replace(moving(LOW[:3]), finished=False), (near(),), {}), {"t:near"})
+
+
+def test_where_a_workspace_is_is_asked_once_and_not_for_each_sample(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = list[str]()
+    regions = WindowEvidence.regions
+
+    def counted(self: WindowEvidence, workspace: str) -> object:
+        asked.append(workspace)
+        return regions(self, workspace)
+
+    monkeypatch.setattr(WindowEvidence, "regions", counted)
+    within = near('"a" is located at "t:ws"')
+    found = with_defined_events(moving(), (within,), {"t:ws": ()})
+    verdict = decide(read_clause(f'{NEAR} after event "t:near"'), found, {}, {"t:near"})
+    assert "where t:ws is, is not known: state its box in a .scenex" in verdict.reason
+    assert len(asked) < len(LOW)
