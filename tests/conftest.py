@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 import tempfile
 from collections.abc import Iterator
 
@@ -10,6 +11,7 @@ from hypothesis import HealthCheck, Phase, settings
 
 from fork_kit import CAN_FORK, INTERPRETERS, fork_server
 from robbdd_tools.base.memory import collect_rarely
+from robbdd_tools.campaign import rates
 
 # Tests neither read nor fill the user's cache.
 os.environ.setdefault("ROBBDD_CACHE", tempfile.mkdtemp(prefix="robbdd-cache-"))
@@ -61,3 +63,11 @@ def forked_processes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyP
     request.getfixturevalue("forks")
     if CAN_FORK:
         monkeypatch.setattr(*INTERPRETERS)
+
+
+@pytest.fixture
+def without_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SciPy cannot be imported, and no figure is remembered from before."""
+    monkeypatch.setitem(sys.modules, "scipy.stats", None)
+    for function in (rates.rate_interval, rates.paired_interval, rates.paired_probability, rates.separate_probability):
+        function.cache_clear()

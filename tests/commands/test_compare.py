@@ -144,10 +144,8 @@ def test_a_level_is_a_probability(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'95' must be a number from 0.5 to less than 1" in capsys.readouterr().err
 
 
-def test_without_scipy_the_extra_is_named(
-    store: RunStore, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("without_scipy")
+def test_without_scipy_the_extra_is_named(store: RunStore, capsys: pytest.CaptureFixture[str]) -> None:
     record_run(store, [0.3, 0.1])
-    monkeypatch.setitem(__import__("sys").modules, "scipy.stats", None)
     assert main(["compare", "1", "1"]) == 2
     assert "pip install 'robbdd-tools[statistics]'" in capsys.readouterr().err

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from robbdd_tools.campaign import rates
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.commands.rate_lines import MAX_LEVELS, rate_lines
 from robbdd_tools.protocol.messages import ClauseJudged, Output, RunMessage, ScenarioFinished
@@ -62,11 +61,8 @@ def test_the_rate_of_a_cancelled_run_is_not_that_of_all_scenarios() -> None:
     assert shown[0].startswith("20 of 50 scenarios, the others have not finished: 18 of 20 hold (90.0 %;")
 
 
-def test_without_scipy_rates_have_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing() -> None:
-        raise rates.StatisticsNotInstalled
-
-    monkeypatch.setattr(rates, "statistics", missing)
+@pytest.mark.usefixtures("without_scipy")
+def test_without_scipy_rates_have_no_interval() -> None:
     assert rate_lines(twenty().scenarios, 20)[0] == "all scenarios: 18 of 20 hold (90.0 %)"
 
 
