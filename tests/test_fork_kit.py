@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -93,6 +94,12 @@ def test_signals_are_forwarded(number: signal.Signals) -> None:
 def test_the_signal_that_ended_it_is_returned() -> None:
     done = subprocess.run(forked("import os; os.kill(os.getpid(), 9)"))
     assert done.returncode == -signal.SIGKILL
+
+
+def test_a_terminal_that_hangs_up_at_its_end_leaves_its_exit_code() -> None:
+    # The terminal hangs up when the fork closes it: before its launcher hears of its end, or after.
+    codes = {os.waitstatus_to_exitcode(pty.spawn(forked("raise SystemExit(7)"))) for _ in range(20)}
+    assert codes == {7}
 
 
 def test_it_is_killed_with_its_launcher() -> None:

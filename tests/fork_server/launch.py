@@ -27,7 +27,10 @@ def main() -> None:
     connection.connect(address)
 
     def forward(number: int, _: FrameType | None) -> None:
-        connection.send(bytes([number]))
+        try:
+            connection.send(bytes([number]))
+        except OSError:  # the fork has ended: a terminal hangs up when its last user closes it
+            return
 
     for number in FORWARDED:
         signal.signal(number, forward)
