@@ -18,7 +18,8 @@ pytestmark = [
     pytest.mark.usefixtures("forks"),
 ]
 PIPE = subprocess.PIPE
-WAITS = "import os; print(os.getpid(), flush=True); input()"
+# In turns: a signal that comes just before a call that waits is handled after it.
+WAITS = "import os, time; print(os.getpid(), flush=True); [time.sleep(0.1) for _ in range(6000)]"
 
 
 def is_running(pid: int) -> bool:

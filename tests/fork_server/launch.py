@@ -6,6 +6,7 @@ forwarded, exit code or signal returned; when this process dies, the fork is kil
 
 import json
 import os
+import select
 import signal
 import socket
 import struct
@@ -39,6 +40,9 @@ def main() -> None:
     # The fork alone holds the streams: who reads them sees when it closes them.
     for descriptor in (0, 1, 2):
         os.close(descriptor)
+    # A signal that comes just before the call is handled after it: wait in turns.
+    while not select.select([connection], [], [], 1.0)[0]:
+        pass
     answer = connection.recv(STATUS.size, socket.MSG_WAITALL)
     status = STATUS.unpack(answer)[0] if len(answer) == STATUS.size else 1
     if status < 0:
