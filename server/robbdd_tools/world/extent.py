@@ -31,6 +31,14 @@ def outline_of(model: ObjectModel) -> Outline:
     return tuple(ball for shape in model.shapes for ball in _balls(shape))
 
 
+def half_sides(model: ObjectModel, rotation: FloatArray) -> tuple[float, float]:
+    """Return how far (m) an object with this rotation matrix reaches from its position along x and along y."""
+    outline = outline_of(model)
+    points = np.abs(np.array([point for point, _ in outline]) @ rotation.T)
+    x, y, _ = (points + np.array([radius for _, radius in outline])[:, None]).max(axis=0).tolist()
+    return x, y
+
+
 def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
     """Return the lowest and the highest corner (m, each of shape (3,)) of the bounding box of shapes, own frame."""
     half = np.array([half_of(shape) for shape in shapes])

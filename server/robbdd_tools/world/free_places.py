@@ -28,9 +28,10 @@ TRIES = 400
 class Field:
     """A rectangle to draw positions from: centre and half edges (m, world frame), and height (m) of objects there.
 
-    ``skew`` bounds the rotation (rad). ``gap`` and ``wall_gap`` are distances (m) to other objects and to bins; in a
-    bin there is no ``wall_gap``. ``base`` is the base of the robot that works there. ``obstacles`` are fixed shapes to
-    keep clear of. ``on`` is the carrier's pose with the region above which objects stay, if the rectangle is larger.
+    ``yaw`` (rad) turns the rectangle and the objects; ``skew`` bounds their rotation (rad) from there. ``gap`` and
+    ``wall_gap`` are distances (m) to other objects and to bins; in a bin there is no ``wall_gap``. ``base`` is the base
+    of the robot that works there. ``obstacles`` are fixed shapes to keep clear of. ``on`` is the carrier's pose with
+    the region above which objects stay, if the rectangle is larger.
     """
 
     center: tuple[float, float]
@@ -42,11 +43,17 @@ class Field:
     base: Pose
     obstacles: tuple[Obstacle, ...] = ()
     on: tuple[Pose, Region] | None = None
+    yaw: float = 0.0
 
     @property
     def is_exact(self) -> bool:
         """Return whether the rectangle is a point."""
         return hypot(*self.half) == 0.0
+
+    def at(self, along: float, across: float) -> tuple[float, float]:
+        """Return the point (m) at these shares, -1 to 1, of the half edges from the centre."""
+        dx, dy, c, s = along * self.half[0], across * self.half[1], cos(self.yaw), sin(self.yaw)
+        return self.center[0] + c * dx - s * dy, self.center[1] + s * dx + c * dy
 
     def has(self, x: float, y: float) -> bool:
         """Return whether a point (m) is above the carrier and before the robot."""
@@ -118,10 +125,10 @@ def draw_place(
         where = f"among {len(taken)} other objects"
         for _ in range(TRIES):
             dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
-            x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
+            x, y = field.at(dx, dy)
             in_the_way = next(_in_the_way(field, size, (x, y), taken, walls), None)
             if in_the_way is None:
-                return Pose((x, y, field.height + size.rest_height), turn * field.skew), rejected
+                return Pose((x, y, field.height + size.rest_height), field.yaw + turn * field.skew), rejected
             if field.is_exact:
                 where = f"at its exact place: {in_the_way}"
             else:
@@ -149,6 +156,6 @@ def place_above(
 ) -> tuple[float, float] | None:
     """Draw a position (m, world frame) above a field, or return ``None`` if it is above a bin or behind the robot."""
     dx, dy = rng.uniform(-1.0, 1.0, 2)
-    x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
+    x, y = field.at(dx, dy)
     free = not any(one.is_near(x, y, radius + TOUCHING) for one in walls)
     return (x, y) if free and field.has(x, y) else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from math import atan2, hypot, inf, pi
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,8 @@ PLAY = 0.004
 """Minimum clearance (m) between an object and the open gripper."""
 DEPTH = 0.030
 """Maximum depth (m) of the tool below an object's top: the length of the fingers."""
+RISES, LEAST_DEPTH = (0.005, 0.01, 0.015, 0.02), 0.008
+"""Where the fingers have no room, an object is gripped this much (m) higher, but at least so far below its top."""
 OTHER_PARTS = 4
 """Number of parts beside an object's middle that are tried."""
 FINGER = 0.01
@@ -32,7 +35,7 @@ class Grasp:
 
     Fingers close along this direction. ``below`` is the object's extent below the tool, m. ``aside`` is the horizontal
     way from the tool to the place of the object's position, m, world frame; 0 for the part in the object's middle.
-    ``part`` is the number of the shape to grip if it is another one.
+    ``part`` is the number of the shape to grip if it is another one. ``depth`` is how far the tool is below the top, m.
     """
 
     position: FloatArray
@@ -41,6 +44,14 @@ class Grasp:
     below: float
     aside: tuple[float, float] = (0.0, 0.0)
     part: int | None = None
+    depth: float = 0.0
+
+    def higher(self) -> Iterator[Grasp]:
+        """Yield the same grasp nearer to the top, as long as the fingers hold enough of the object."""
+        for rise in RISES:
+            if self.depth - rise >= LEAST_DEPTH:
+                up = np.array([0.0, 0.0, rise])
+                yield replace(self, position=self.position + up, below=self.below + rise, depth=self.depth - rise)
 
 
 def finger_grasps(
@@ -63,7 +74,8 @@ def finger_grasps(
         aside = (0.0, 0.0) if index == middle else (float(position[0] - grip[0]), float(position[1] - grip[1]))
         part = None if index == middle else index
         fits = ((angle, width) for angle, width in directions if closed < width and width + PLAY <= stroke)
-        fitting += [Grasp(grip, angle, width, below, aside, part) for angle, width in fits]
+        depth = float(center[2]) + half_height - float(grip[2])
+        fitting += [Grasp(grip, angle, width, below, aside, part, depth) for angle, width in fits]
         narrowest = min(narrowest, *(width for _, width in directions))
         widest = max(widest, *(width for _, width in directions))
     if not fitting:

@@ -8,7 +8,9 @@ from functools import partial
 from math import hypot, pi
 from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.api import ObjectModel, RobotModel, ShapeKind, Vector
+import numpy as np
+
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.catalog.settings import NORMAL
@@ -16,6 +18,7 @@ from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.dropping import Ball, drop
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import half_sides
 from robbdd_tools.world.fixed_obstacles import fixed_obstacles
 from robbdd_tools.world.free_places import TOUCHING, TRIES, Field, Size, Taken, Wall, draw_place, place_above
 from robbdd_tools.world.passive_joints import initial_pose, ways_of_parts
@@ -27,8 +30,6 @@ from robbdd_tools.world.working_area import area_within, place_before
 from robbdd_tools.world.working_area import field_before as field_before
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from robbdd_tools.protocol.specs import SceneSpec
     from robbdd_tools.world.cast import Cast
 
@@ -222,12 +223,17 @@ def _fields(
     if region is None:
         raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
     x, y, z = pose.at(region.center).position
-    half, base = _flat(region.half, pose_along_edges(pose, region).yaw), works_at(pose, model)
+    yaw = pose_along_edges(pose, region).yaw
+    half, base = _flat(region.half, yaw), works_at(pose, model)
     bottom = z - region.half[2]
+    if radius > min(region.half[:2]) and name not in cast.ranges:
+        for turn, room in _along_edges(cast.objects[name], region):
+            yield Field((x, y), room, bottom, 0.0, TOUCHING, None, base, yaw=yaw + turn)
     if can_move(model) or region.walled:
         inner = (half[0] - radius, half[1] - radius)
         if region.walled:
-            yield Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base)
+            edge = yaw - pi / 2 * round(yaw / (pi / 2))
+            yield Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None, base, yaw=edge)
         else:
             yield Field((x, y), inner, bottom, pi, FINGER_GAP, None, base)
         yield Field((x, y), inner, bottom, pi, TOUCHING, None, base)
@@ -244,6 +250,18 @@ def _fields(
     if obstacles:
         # Their boxes may be larger than they are. Whether anything overlaps is checked later.
         yield Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, (), on)
+
+
+def _along_edges(model: ObjectModel, region: Region) -> Iterator[tuple[float, tuple[float, float]]]:
+    """Yield the rotations (rad) at which an object that cannot be turned as it likes fits, and its room (m) there.
+
+    Its sides are along the edges of the region; the room is how far it may be from the middle along its own axes.
+    """
+    (long, wide), (first, second, _) = half_sides(model, np.eye(3)), region.half
+    if long <= first and wide <= second:
+        yield 0.0, (first - long, second - wide)
+    if long <= second and wide <= first:
+        yield pi / 2, (second - long, first - wide)
 
 
 def _flat(half: Vector, yaw: float) -> Vector:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import atan2, hypot
+from math import atan2, cos, hypot, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,7 @@ from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.working_area import area_of, is_on
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import Region, Vector
+    from robbdd_tools.catalog.api import FloatArray, Region, Vector
     from robbdd_tools.world.robot import Robot
     from robbdd_tools.world.simulation import Simulation
 
@@ -25,20 +25,37 @@ ALONG = (0.0, -0.03, 0.03)
 """A hand fits into a bin at these distances (m) along its length from its centre."""
 GRID = 7
 """Number of places tried along each side of a table."""
+SMALL = 0.15
+"""Of a place whose sides are at most twice as long (m), all of it is tried, also what is not in front of the robot."""
 INTO_BIN, ONTO_TABLE = 0.02, 0.005
 """An object is released at this height (m) above the surface."""
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """The bottom of a workspace, world frame: its middle, half its sides (m), and the direction (rad) of the first."""
+
+    center: tuple[float, float]
+    half: tuple[float, float]
+    yaw: float
+
+    def at(self, position: Vector) -> tuple[float, float]:
+        """Return how far (m) a point is from the middle, along both sides."""
+        x, y, c, s = position[0] - self.center[0], position[1] - self.center[1], cos(self.yaw), sin(self.yaw)
+        return c * x + s * y, c * y - s * x
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
     """A place to put an object: a point on the surface (m, world frame) and the release height (m) above it.
 
-    ``closing`` is the closing direction (rad) of the fingers there, ``None`` for any direction.
+    ``closing`` is the usual closing direction (rad) of the fingers there, ``None`` for any direction.
     """
 
     position: Vector
     gap: float
     closing: float | None
+    floor: Floor
 
 
 def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> Iterator[Target]:
@@ -82,7 +99,8 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
     axis = rotation[:, longest]
     points = [position + rotation @ bottom + along * axis for along in ALONG]
     for point in sorted(points, key=lambda point: -_room(point[0], point[1], others)):
-        yield Target((float(point[0]), float(point[1]), float(point[2])), INTO_BIN, atan2(axis[1], axis[0]))
+        place = (float(point[0]), float(point[1]), float(point[2]))
+        yield Target(place, INTO_BIN, atan2(axis[1], axis[0]), _floor(position, rotation, region))
 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
@@ -99,7 +117,8 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
     closing = atan2(rotation[1, longest], rotation[0, longest])
     # Sorting is stable: places with equal room stay ordered by distance from the centre.
     for point in sorted(points, key=lambda point: _crowding(point[0], point[1], others, radius)):
-        yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
+        place = (float(point[0]), float(point[1]), float(point[2]))
+        yield Target(place, ONTO_TABLE, closing, _floor(position, rotation, region))
 
 
 def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, region: Region) -> Iterator[Target]:
@@ -107,9 +126,9 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
     model = simulation.world.cast.objects[carrier]
     yaw = atan2(float(rotation[1, 0]), float(rotation[0, 0]))
     table = Pose((float(position[0]), float(position[1]), float(position[2])), yaw)
-    # Whether an arm reaches a user's own place is up to the arm.
-    area = field_before(robot.base, table, replace(model, region=region)) or area_of(table, region)
-    (cx, cy), (hx, hy) = area
+    # Whether an arm reaches a user's own place is up to the arm. A part may fit only into the middle of a small one.
+    field = field_before(robot.base, table, replace(model, region=region)) if max(region.half[:2]) > SMALL else None
+    (cx, cy), (hx, hy) = field or area_of(table, region)
     shares = np.linspace(-1.0, 1.0, GRID)
     others = _others(simulation, name, carrier)
     radius = footprint(simulation.world.cast.objects[name])
@@ -118,8 +137,15 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
     crowding = {point: _crowding(*point, others, radius) for point in points}
     roomy = [point for point in points if not crowding[point]]
     surface = float(position[2]) + region.center[2] - region.half[2]
+    floor = _floor(*along_edges((position, rotation), region), region)
     for x, y in sorted(roomy or points, key=lambda point: (crowding[point], hypot(point[0] - cx, point[1] - cy))):
-        yield Target((x, y, surface), ONTO_TABLE, None)
+        yield Target((x, y, surface), ONTO_TABLE, None, floor)
+
+
+def _floor(position: FloatArray, rotation: FloatArray, region: Region) -> Floor:
+    """Return the bottom of a region whose edges are along the axes of its carrier's frame."""
+    x, y, _ = (position + rotation @ np.array(region.center)).tolist()
+    return Floor((x, y), region.half[:2], atan2(rotation[1, 0], rotation[0, 0]))
 
 
 def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float, float, float]]:

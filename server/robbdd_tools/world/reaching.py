@@ -174,22 +174,37 @@ def approaches_by(
 
     ``over`` returns the pose from which a grasp is approached; by default, it is at the travelling height.
     """
+    for grasp in grasps:
+        lowest = _approach(robot, grasp, clearance, missed, over)
+        if lowest is None:
+            continue
+        others = (_approach(robot, one, clearance, missed, over) for one in grasp.higher() if lowest.depth > 0.0)
+        yield next((one for one in others if one is not None and one.depth == 0.0), lowest)
+
+
+def _approach(
+    robot: Robot,
+    centred: Grasp,
+    clearance: Clearance,
+    missed: Obstruction | None,
+    over: Callable[[ToolPose, Grasp], ToolPose] | None,
+) -> Approach | None:
+    """Return how the arm approaches a grasp with either finger on either side, or ``None`` if it is out of reach."""
     arm, one_sided = arm_of(robot.model), finger_motion(robot.model).one_sided
-    for centred in grasps:
-        grasp = centred
-        for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
-            if one_sided:
-                at, grasp = _beside_fixed_jaw(robot.base, at, centred)
-            above = at_travel(robot, at) if over is None else over(at, grasp)
-            try:
-                joints = joints_at(arm, above, at)
-            except Unreachable as error:
-                if missed is not None:
-                    missed.note(error)
-                continue
-            hit = clearance.hit(joints)
-            yield Approach(grasp, above, at, joints, hit.depth, hit.owner)
-            break
+    grasp = centred
+    for at in either_way(arm, tool_pose(robot.base, grasp.position, grasp.closing)):
+        if one_sided:
+            at, grasp = _beside_fixed_jaw(robot.base, at, centred)
+        above = at_travel(robot, at) if over is None else over(at, grasp)
+        try:
+            joints = joints_at(arm, above, at)
+        except Unreachable as error:
+            if missed is not None:
+                missed.note(error)
+            continue
+        hit = clearance.hit(joints)
+        return Approach(grasp, above, at, joints, hit.depth, hit.owner)
+    return None
 
 
 def _beside_fixed_jaw(base: Pose, pose: ToolPose, grasp: Grasp) -> tuple[ToolPose, Grasp]:

@@ -1,0 +1,126 @@
+"""Nests and vises: a part fits only if its sides are along their edges, and a hand only beside their walls."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, hypot, pi, radians, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.objects.box import BOX as CARTON
+from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
+from robbdd_tools.world.extent import half_sides, outline_of
+from robbdd_tools.world.free_places import Field
+from robbdd_tools.world.pose import Pose
+from robbdd_tools.world.put_down import Floor, targets
+from robbdd_tools.world.region_frames import along_edges
+from robbdd_tools.world.simulation import Simulation
+from world.scene_instances import catalog, file, instance, link
+from world.worlds import PANDA, pick_place, scenario
+
+BOX, NEST, NEST_WS, BENCH, BENCH_WS = "env:box1", "env:nest", "env:nest_ws", "env:bench", "env:bench_ws"
+SITE = '<site name="workspace" type="box" size="{} {} .04" pos="0 0 .06"/>'
+BED = '<geom type="box" size=".06 .06 .01" pos="0 0 .01"/>'
+WALLS = """
+<geom type="box" size=".01 .05 .006" pos=".045 0 .026"/><geom type="box" size=".01 .05 .006" pos="-.045 0 .026"/>
+<geom type="box" size=".06 .01 .006" pos="0 .037 .026"/><geom type="box" size=".06 .01 .006" pos="0 -.037 .026"/>"""
+JAWS = """
+<geom type="box" size=".01 .06 .025" pos=".036 0 .045"/><geom type="box" size=".01 .06 .025" pos="-.036 0 .045"/>"""
+POCKET = BED + WALLS + SITE.format(0.035, 0.027)
+"""A pocket of 70 × 54 mm, 12 mm deep, for the box of 60 × 44 mm."""
+VISE = BED + JAWS + SITE.format(0.026, 0.06)
+"""Two jaws of 50 mm height, 52 mm apart."""
+
+
+def cell(
+    folder: Path, nest: str, degrees: float, seed: int, arm: str = "franka-panda", unload: bool = False
+) -> Execution:
+    """Return an execution in which an arm puts a box into a nest that is turned, or takes it out of there."""
+    text = f'<mujoco><worldbody><body name="nest">{nest}</body></worldbody></mujoco>'
+    half = radians(degrees) / 2
+    place = link("x:g.nest.foot", (0.45, -0.15, 0.1), turn=(cos(half), 0.0, 0.0, sin(half)))
+    elements = (file(folder, NEST, text, ("x:g.nest", "nest")), catalog(PANDA, arm))
+    start, goal = (NEST_WS, BENCH_WS) if unload else (BENCH_WS, NEST_WS)
+    scene = SceneSpec((BOX, NEST, BENCH), (PANDA,), {NEST_WS: (NEST,), BENCH_WS: (BENCH,)}, {}, places={BOX: start})
+    execution = ExecutionSpec(
+        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(place, elements=elements)
+    )
+    return Execution(replace(scenario(scene, seed), execution=execution), [pick_place(BOX, goal)])
+
+
+def room(simulation: Simulation) -> float:
+    """Return the distance (m) of the box from the sides and the bottom of the nest, negative outside."""
+    ((carrier, region),) = simulation.world.cast.regions[NEST_WS]
+    (at, turn), (origin, edges) = simulation.pose(BOX), along_edges(simulation.seen_place(carrier), region)
+    corners = np.array([point for point, _ in outline_of(simulation.world.cast.objects[BOX])])
+    local = (corners @ turn.T + at - origin) @ edges - region.center
+    sides = np.array(region.half) - np.abs(local)
+    return float(min(sides[:, :2].min(), (local[:, 2] + region.half[2]).min() + 1e-3))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("arm", ["franka-panda", "ur10"])
+@pytest.mark.parametrize("degrees", [0.0, 30.0, 90.0])
+@pytest.mark.parametrize("nest", [POCKET, VISE], ids=["pocket", "vise"])
+def test_a_part_is_put_into_a_nest(tmp_path: Path, nest: str, degrees: float, arm: str) -> None:
+    run = cell(tmp_path, nest, degrees, 1, arm)
+    assert run.run_behaviour(0), run.trace.remark
+    assert room(run.simulation) > 0.0
+    assert run.simulation.pose(BOX)[1][2, 2] > 0.999
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("nest", [POCKET, VISE], ids=["pocket", "vise"])
+def test_a_part_that_is_in_a_nest_is_taken_out(tmp_path: Path, nest: str) -> None:
+    run = cell(tmp_path, nest, 30.0, 1, unload=True)
+    assert room(run.simulation) > 0.0
+    assert run.run_behaviour(0), run.trace.remark
+    assert room(run.simulation) < -0.05
+
+
+@pytest.mark.parametrize("nest", [POCKET, VISE], ids=["pocket", "vise"])
+def test_a_part_is_laid_out_in_a_nest_as_it_fits(tmp_path: Path, nest: str) -> None:
+    starts = [cell(tmp_path, nest, 30.0, seed, unload=True).simulation for seed in range(1, 6)]
+    assert all(room(one) > 0.0 for one in starts)
+    places = {round(float(one.pose(BOX)[0][0]), 6) for one in starts}
+    assert len(places) == len(starts), "the room that is left is used"
+
+
+def test_all_of_a_small_place_is_tried(tmp_path: Path) -> None:
+    """The usual area of an arm begins 0.25 m ahead of it; the pocket is at 0.24 m."""
+    text = f'<mujoco><worldbody><body name="nest">{VISE}</body></worldbody></mujoco>'
+    element = file(tmp_path, NEST, text, ("x:g.nest", "nest"))
+    scene = SceneSpec((BOX, NEST, BENCH), (PANDA,), {NEST_WS: (NEST,), BENCH_WS: (BENCH,)}, {})
+    spec = ExecutionSpec(
+        "x:run",
+        "x:run",
+        Implementation("x:own", "catalog", "pick-place"),
+        instance(link("x:g.nest.foot", (0.24, 0.0, 0.1)), elements=(element,)),
+    )
+    simulation = Execution(replace(scenario(scene, 1), execution=spec), [pick_place(BOX, NEST_WS)]).simulation
+    (first, *_) = targets(simulation, simulation.robots[PANDA], BOX, NEST_WS)
+    assert first.position[:2] == pytest.approx((0.24, 0.0))
+
+
+def test_the_sides_of_an_object_turn_with_it() -> None:
+    (long, wide), (first, second) = half_sides(CARTON, np.eye(3)), (0.03, 0.022)
+    assert (long, wide) == pytest.approx((first, second))
+    c, s = cos(0.5), sin(0.5)
+    turned = half_sides(CARTON, np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
+    assert turned == pytest.approx((c * first + s * second, s * first + c * second))
+
+
+def test_the_floor_of_a_place_has_its_own_axes() -> None:
+    floor = Floor((1.0, 2.0), (0.3, 0.1), pi / 6)
+    assert floor.at((1.0 + cos(pi / 6), 2.0 + sin(pi / 6), 0.0)) == pytest.approx((1.0, 0.0))
+    assert floor.at((1.0 - sin(pi / 6), 2.0 + cos(pi / 6), 0.0)) == pytest.approx((0.0, 1.0))
+
+
+def test_a_field_may_be_turned() -> None:
+    field = Field((1.0, 2.0), (0.3, 0.1), 0.0, 0.0, 0.0, None, Pose((0.0, 0.0, 0.0)), yaw=pi / 2)
+    assert field.at(1.0, -1.0) == pytest.approx((1.1, 2.3))
+    assert hypot(*np.subtract(field.at(0.0, 1.0), (1.0, 2.0))) == pytest.approx(0.1)
