@@ -1,4 +1,4 @@
-"""``simultaneous-agent``: one agent has two behaviours at the same time (``meanwhile``)."""
+"""``simultaneous-agent``: one agent has two behaviours at the same time (``meanwhile``), or two roles in one."""
 
 from __future__ import annotations
 
@@ -22,13 +22,27 @@ _MEANWHILE = "meanwhile"
 
 
 def simultaneous_agent(site: Site) -> Iterator[Diagnostic]:
-    """Report each behaviour of a template whose agent executes another one at the same time."""
+    """Report each behaviour whose agent executes another one at the same time, or hands over to itself."""
     template = site.tree
     if not isinstance(template, tree.Template):
         return
-    for when in walk(template.body):
-        if isinstance(when, tree.When) and when.more:
-            yield from _in_when(site, when)
+    for node in walk(template.body):
+        if isinstance(node, tree.When) and node.more:
+            yield from _in_when(site, node)
+        elif isinstance(node, tree.BehaviourUse):
+            yield from _in_behaviour(site, node)
+
+
+def _in_behaviour(site: Site, use: tree.BehaviourUse) -> Iterator[Diagnostic]:
+    seen: dict[tuple[str, str], tree.Ref] = {}
+    for agent in _agents(use):
+        target = site.target(agent)
+        if target is None:
+            continue
+        first = seen.setdefault((target.uri, target.symbol.path), agent)
+        if first is not agent:
+            message = f"'{agent.path}' is both agents of '{use.action.word}': name another agent"
+            yield finding(site, agent, Severity.ERROR, CODE, message, (related_to(site, first, "the same agent"),))
 
 
 def _in_when(site: Site, when: tree.When) -> Iterator[Diagnostic]:
@@ -36,7 +50,7 @@ def _in_when(site: Site, when: tree.When) -> Iterator[Diagnostic]:
     for step in when.steps:
         if not isinstance(step, tree.Further) or step.link != _MEANWHILE:
             busy = {}
-        agent = _agent(step.behaviour)
+        agent = next(_agents(step.behaviour), None)
         target = None if agent is None else site.target(agent)
         if agent is None or target is None:
             continue
@@ -51,9 +65,10 @@ def _in_when(site: Site, when: tree.When) -> Iterator[Diagnostic]:
             yield finding(site, agent, Severity.ERROR, CODE, message, related, (fix,))
 
 
-def _agent(use: tree.BehaviourUse) -> tree.Ref | None:
-    """Return the agent of a behaviour."""
+def _agents(use: tree.BehaviourUse) -> Iterator[tree.Ref]:
+    """Yield the agents of a behaviour; the first one executes it."""
     written = dict(use.action.arguments)
-    slots = load_catalog().behaviours[use.action.word].slots
-    agents = (written.get(slot.name) for slot in slots if slot.kind is Kind.AGENT)
-    return next((agent for agent in agents if isinstance(agent, tree.Ref)), None)
+    for slot in load_catalog().behaviours[use.action.word].slots:
+        agent = written.get(slot.name)
+        if slot.kind is Kind.AGENT and isinstance(agent, tree.Ref):
+            yield agent
