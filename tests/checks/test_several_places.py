@@ -77,3 +77,10 @@ def test_a_clause_of_a_variant_is_reported_in_the_story() -> None:
     )
     (one,) = found(model("{ { <places.tray_ws>, <places.bin_ws> } }", text), "several-places")
     assert "'fetch.part' cannot be located at each of 'fetch.goals'" in one.message
+
+
+def test_a_thing_that_should_be_entirely_inside_each_of_several_places_is_reported() -> None:
+    text = SORTING.replace("<part> is located at <goals>,", "<part> is entirely inside <goals>,")
+    (message,) = messages("{ { <places.tray_ws>, <places.bin_ws> } }", text)
+    assert message.startswith("'part' cannot be entirely inside each of 'goals', because 'tray_ws' and 'bin_ws' have")
+    assert "{ … <part> is entirely inside <place> … }" in message

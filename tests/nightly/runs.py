@@ -127,7 +127,7 @@ def _check_model(folder: Path) -> None:
     path = next(folder.glob("case.*"))
     arm = ArmModel("tcp" if path.suffix == ".xml" else "hand", "grip", 0.04, 0.0, ("left_pad", "right_pad"), 0.08)
     source = ModelSource("urn:m", "urdf" if path.suffix == ".urdf" else "mjcf", "file", str(path), arm=arm)
-    for read in (lambda: object_from(load(source), source, "", carries=True), lambda: robot_from(source, "five")):
+    for read in (lambda: object_from(load(source), source, "", ("tray_ws",)), lambda: robot_from(source, "five")):
         with suppress(SceneError):
             read()
 

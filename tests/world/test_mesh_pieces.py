@@ -100,14 +100,14 @@ def test_pieces_keep_mass_inertia_friction_and_place(tmp_path: Path) -> None:
 
 def test_an_object_consists_of_the_pieces_and_is_no_longer_hollow(tmp_path: Path) -> None:
     path = write_model(tmp_path)
-    whole = object_from(load(source(path)), source(path), "", carries=True)
+    whole = object_from(load(source(path)), source(path), "", ("tray_ws",))
     assert (len(whole.model.shapes), whole.hollow) == (1, pytest.approx(HULL, rel=1e-5))
 
 
 def test_a_cut_object_consists_of_its_pieces(tmp_path: Path) -> None:
     path = write_model(tmp_path)
     cut(path)
-    found = object_from(load(source(path)), source(path), "", carries=True)
+    found = object_from(load(source(path)), source(path), "", ("tray_ws",))
     assert len(found.model.shapes) > 4
     assert found.hollow == 0.0
     assert found.model.mass == pytest.approx(0.5)
@@ -131,18 +131,18 @@ def test_a_workspace_that_the_hull_of_a_mesh_fills_is_refused(tmp_path: Path) ->
         r"in tote\.xml, the mesh 'shell' collides as its convex hull, which fills the workspace 'workspace'; 'robbdd"
     )
     with pytest.raises(SceneError, match=words):
-        object_from(load(tote), tote, "", carries=True)
+        object_from(load(tote), tote, "", ("tray_ws",))
 
 
 def test_a_workspace_above_a_mesh_is_not_filled(tmp_path: Path) -> None:
     tote = with_workspace(tmp_path, HEIGHT + 0.01)
-    assert object_from(load(tote), tote, "", carries=True).hollow > 1
+    assert object_from(load(tote), tote, "", ("tray_ws",)).hollow > 1
 
 
 def test_a_workspace_in_a_mesh_that_is_cut_is_not_filled(tmp_path: Path) -> None:
     tote = with_workspace(tmp_path, HEIGHT / 2)
     cut(tmp_path / "tote.xml")
-    region = object_from(load(tote), tote, "", carries=True).model.region
+    region = object_from(load(tote), tote, "", ("tray_ws",)).model.region
     assert region is not None
     assert region.center[2] == pytest.approx(HEIGHT / 2)
     assert region.walled

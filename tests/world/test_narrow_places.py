@@ -19,6 +19,7 @@ from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.put_down import Floor, targets
 from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.simulation import Simulation
+from robbdd_tools.world.space_remarks import space_remarks
 from world.scene_instances import catalog, file, instance, link
 from world.worlds import PANDA, pick_place, scenario
 
@@ -124,3 +125,73 @@ def test_a_field_may_be_turned() -> None:
     field = Field((1.0, 2.0), (0.3, 0.1), 0.0, 0.0, 0.0, None, Pose((0.0, 0.0, 0.0)), yaw=pi / 2)
     assert field.at(1.0, -1.0) == pytest.approx((1.1, 2.3))
     assert hypot(*np.subtract(field.at(0.0, 1.0), (1.0, 2.0))) == pytest.approx(0.1)
+
+
+SLOTS, BOXES = ("env:slot_1", "env:slot_2", "env:slot_10"), ("env:box1", "env:box2", "env:box3")
+MAGAZINE, PITCH = "env:magazine", 0.06
+SLOTTED = SceneSpec((), (), dict.fromkeys(SLOTS, (MAGAZINE,)), {})
+
+
+def magazine(suffix: str, count: int = 3) -> str:
+    """Return a magazine with three pockets of 68 × 51 mm, 12 mm deep, and sites for some of its slots."""
+    walls = "".join(f'<geom type="box" size=".034 .0045 .006" pos="0 {PITCH * (n - 1.5)} .026"/>' for n in range(4))
+    ends = "".join(f'<geom type="box" size=".01 .1 .006" pos="{x} 0 .026"/>' for x in (0.044, -0.044))
+    sites = "".join(
+        f'<site name="{one[4:]}{suffix}" type="box" size=".034 .0255 .04" pos="0 {PITCH * (n - 1)} .06"/>'
+        for n, one in enumerate(SLOTS[:count])
+    )
+    return f"""<mujoco><worldbody><body name="magazine"><geom type="box" size=".054 .1 .01" pos="0 0 .01"/>
+    {walls}{ends}{sites}</body></worldbody></mujoco>"""
+
+
+def filled(folder: Path, suffix: str = "", count: int = 3, starts: tuple[str, ...] = SLOTS) -> Execution:
+    """Return an execution that moves a box of a magazine with three boxes to any of its slots."""
+    element = file(folder, MAGAZINE, magazine(suffix, count), ("x:g.magazine", "magazine"))
+    place = link("x:g.magazine.foot", (0.5, 0.1, 0.1), turn=(cos(0.2), 0.0, 0.0, sin(0.2)))
+    slots = dict.fromkeys(SLOTS, (MAGAZINE,))
+    places = dict(zip(BOXES, starts, strict=False))
+    scene = SceneSpec((*places, MAGAZINE, BENCH), (PANDA,), {**slots, BENCH_WS: (BENCH,)}, {}, places=places)
+    execution = ExecutionSpec(
+        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(place, elements=(element,))
+    )
+    call = replace(pick_place(BOXES[0]), arguments={"agent": PANDA, "object": BOXES[0], "workspace": SLOTS})
+    return Execution(replace(scenario(scene), execution=execution), [call])
+
+
+@pytest.mark.parametrize("suffix", ["", "_workspace"])
+def test_the_slots_of_a_magazine_are_sites_with_the_names_of_its_workspaces(tmp_path: Path, suffix: str) -> None:
+    cast = filled(tmp_path, suffix).simulation.world.cast
+    for n, slot in enumerate(SLOTS):
+        ((carrier, region),) = cast.regions[slot]
+        assert carrier == MAGAZINE
+        assert region.center[1] == pytest.approx(PITCH * (n - 1))
+    assert not dict(space_remarks(SLOTTED, cast))
+
+
+def test_each_slot_of_a_magazine_takes_a_part(tmp_path: Path) -> None:
+    simulation = filled(tmp_path).simulation
+    along = [
+        simulation.pose(MAGAZINE)[1][:, 1] @ (simulation.pose(box)[0] - simulation.pose(MAGAZINE)[0]) for box in BOXES
+    ]
+    assert along == pytest.approx([-PITCH, 0.0, PITCH], abs=0.01)
+
+
+@pytest.mark.physics
+def test_a_part_is_put_into_the_slot_that_is_free(tmp_path: Path) -> None:
+    run = filled(tmp_path, starts=(BENCH_WS, SLOTS[0], SLOTS[2]))
+    assert run.run_behaviour(0), run.trace.remark
+    (magazine_at, turn), (box, _) = run.simulation.pose(MAGAZINE), run.simulation.pose(BOXES[0])
+    assert (turn.T @ (box - magazine_at))[:2] == pytest.approx((0.0, 0.0), abs=0.01)
+
+
+def test_a_run_says_which_workspaces_are_one_space(tmp_path: Path) -> None:
+    cast = filled(tmp_path, count=1, starts=(BENCH_WS,)).simulation.world.cast
+    remarks = dict(space_remarks(SLOTTED, cast))
+    assert remarks.keys() == set(SLOTS)
+    assert remarks[SLOTS[1]].startswith("the same space of 'env:magazine', so what is at one of them is at each;")
+
+
+def test_a_run_says_which_workspace_is_all_spaces_of_an_object(tmp_path: Path) -> None:
+    cast = filled(tmp_path, count=2, starts=(BENCH_WS,)).simulation.world.cast
+    remarks = dict(space_remarks(SLOTTED, cast))
+    assert remarks == {SLOTS[2]: "all workspaces of 'env:magazine', as no site of its model has this name"}

@@ -52,6 +52,7 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.log_views import verdict_views, views
 from robbdd_tools.world.mesh_pieces import CUT
 from robbdd_tools.world.model_meshes import hollow_scenery
+from robbdd_tools.world.space_remarks import space_remarks
 from robbdd_tools.world.viewer import NoViewer, Viewer
 
 if TYPE_CHECKING:
@@ -157,6 +158,7 @@ class ScenarioRun:
         hollow = {} if cast.staging is None else dict(cast.staging.hollow) | hollow_scenery(execution.simulation.model)
         for name, share in hollow.items():
             remarks[name] = f"a hollow mesh, which collides as its convex hull with {share:.1f} times its volume; {CUT}"
+        remarks |= dict(space_remarks(self._spec.scene, cast))
         new: dict[str, list[str]] = {}
         for name, remark in remarks.items():
             if name not in self._courses.reported:

@@ -291,11 +291,6 @@ class ObjectModel:
     whole_words: bool = False
     unspecific: bool = False
 
-    def spaces(self, workspace: str) -> tuple[Region, ...]:
-        """Return the regions of a workspace: the parts that its name contains, else all parts, else ``region``."""
-        named = tuple(part for part in self.parts if part.name in workspace.lower())
-        return named or self.parts or (() if self.region is None else (self.region,))
-
 
 class GripperKind(StrEnum):
     """How a tool grips: with two closing fingers, or with a suction cup."""

@@ -7,7 +7,6 @@ A third-party package adds a word by an entry point of the group ``robbdd_tools.
 from __future__ import annotations
 
 import pkgutil
-import re
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
@@ -17,12 +16,11 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
 from robbdd_tools.catalog.foreign_words import GROUP, Word, foreign_words
+from robbdd_tools.catalog.name_words import spaces_of, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
-"""Word boundary inside a name like ``redCube``."""
 _PREPOSITIONS = {"at", "for", "from", "in", "into", "near", "of", "on", "onto", "under", "with"}
 """In a name, what an object is precedes such a word: ``cube_on_table``."""
 FOLDERS = ("predicates", "behaviours", "objects", "robots")
@@ -128,7 +126,7 @@ def _by_names(models: Mapping[str, Model], local_name: str, sets: Iterable[str])
 
 
 def _by_name(models: Mapping[str, Model], name: str) -> Model | None:
-    words = re.findall(r"[a-z]+|[0-9]+", _HUMP.sub(" ", name).lower())
+    words = words_of(name)
     relation = next((place for place, word in enumerate(words) if word in _PREPOSITIONS), len(words))
     return _best(models, words[:relation]) or _best(models, words)
 
@@ -151,7 +149,7 @@ def _precedence(model: ObjectModel | RobotModel, rank: tuple[bool, int, int]) ->
     """
     whole, place, length = rank
     if isinstance(model, ObjectModel):
-        return whole, bool(model.spaces("")), place, length
+        return whole, bool(spaces_of(model, "")), place, length
     return whole, False, -place, length
 
 
@@ -164,7 +162,7 @@ def _rank(prefix: str, words: list[str]) -> tuple[bool, int, int] | None:
 
     A word may be plural. A part of a word counts only at the word's beginning or end: a cabinet is not a bin.
     """
-    wanted = re.findall(r"[a-z]+|[0-9]+", prefix)
+    wanted = words_of(prefix)
     count, joined = len(wanted), "".join(wanted)
     plural = [*wanted[:-1], f"{wanted[-1]}s"]
     places = [place for place in range(len(words)) if words[place : place + count] in (wanted, plural)]

@@ -52,6 +52,7 @@ from robbdd_tools.checks.python_source import python_source
 from robbdd_tools.checks.quantity import quantity
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
+from robbdd_tools.checks.same_space import same_space
 from robbdd_tools.checks.selection_size import selection_size
 from robbdd_tools.checks.setting import setting
 from robbdd_tools.checks.several_places import several_places
@@ -123,6 +124,7 @@ FILE_RULES = (
     property_condition,
     published_form,
     python_source,
+    same_space,
     several_places,
     table_column,
     unused_event,

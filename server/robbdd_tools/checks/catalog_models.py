@@ -27,7 +27,7 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
     """
     for placed in file.of(tree.Scene):
         scene = placed.declaration.tree
-        if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
+        if not isinstance(scene, tree.Scene) or has_executable_scene(snapshot, scene.name.text):
             continue
         chosen = _chosen(simulated_members(Site(snapshot, file, placed)))
         if chosen:
@@ -37,7 +37,8 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             yield Diagnostic(file.document.uri, span, Severity.INFORMATION, "catalog-models", message)
 
 
-def _is_executable(snapshot: Snapshot, scene: str) -> bool:
+def has_executable_scene(snapshot: Snapshot, scene: str) -> bool:
+    """Return whether a loaded executable scene realises a scene of this name."""
     return scene in _executable_scenes(snapshot)
 
 

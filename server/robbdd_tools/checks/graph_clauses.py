@@ -21,7 +21,7 @@ from robbdd_tools.checks.no_evaluator import needs_evaluator, sample_sentence
 from robbdd_tools.checks.setting import CODE as SETTING
 from robbdd_tools.checks.setting import may_have, not_configurable, unknown_setting
 from robbdd_tools.checks.several_places import CODE as SEVERAL_PLACES
-from robbdd_tools.checks.several_places import at_each, have_nothing_in_common
+from robbdd_tools.checks.several_places import PLACED, at_each, have_nothing_in_common
 from robbdd_tools.checks.single_element import CODE as SINGLE_ELEMENT
 from robbdd_tools.checks.single_element import needs_one
 from robbdd_tools.graph.acceptance_model import (
@@ -54,7 +54,7 @@ def clause_findings(site: GraphSite) -> Iterator[Diagnostic]:
                 yield from _sets(site, variant, clause)
             elif isinstance(clause, Fluent) and clause.predicate == "has-config":
                 yield from _configuration(site, variant, clause)
-            elif isinstance(clause, Fluent) and clause.predicate == "located-at" and not _is_lenient(clause):
+            elif isinstance(clause, Fluent) and clause.predicate in PLACED and not _is_lenient(clause):
                 yield from _places(site, variant, clause)
 
 
@@ -137,7 +137,7 @@ def _places(site: GraphSite, variant: Variant, clause: Fluent) -> Iterator[Diagn
         for one, other in combinations(places, 2):
             if have_nothing_in_common(one, other, carriers, inner):
                 thing, several = site.name(clause.arguments["object"]), site.name(variable)
-                message = at_each(thing, several, site.name(one), site.name(other))
+                message = at_each(clause.predicate, thing, several, site.name(one), site.name(other))
                 yield site.finding(clause.iri, SEVERAL_PLACES, message)
                 return
 

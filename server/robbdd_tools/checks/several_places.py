@@ -1,6 +1,7 @@
 """``several-places``: an object should be located at each of several places that have nothing in common.
 
-Like every other set, a set of places in ``is located at`` means each of its elements. Users often mean one of them.
+Like every other set, a set of places in ``is located at`` or ``is entirely inside`` means each of its elements. Users
+often mean one of them.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.resolve import Resolution
 
 CODE = "several-places"
+PLACED = {"located-at": "is located at", "is-entirely-inside": "is entirely inside"}
+"""The predicates that an object fulfils at one place at a time, with their verbs."""
 Key = tuple[str, str]
 Name = TypeVar("Name", bound=Hashable)
 
@@ -39,6 +42,7 @@ class _Use:
     """A clause of a template or a variant in which a set variable is the place of an object."""
 
     site: Site
+    word: str
     thing: str
     place: tree.Ref
     variable: str
@@ -63,17 +67,18 @@ def several_places(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             if found is not None:
                 reported.add(id(use))
                 node, one, other = found
-                message = at_each(use.thing, use.place.path, one, other)
+                message = at_each(use.word, use.thing, use.place.path, one, other)
                 related = (related_to(scenario.site, node, "the places"),)
                 yield finding(use.site, use.place, Severity.WARNING, CODE, message, related)
 
 
-def at_each(thing: str, places: str, one: str, other: str) -> str:
-    """Return the message on an object that should be located at each of several places."""
+def at_each(word: str, thing: str, places: str, one: str, other: str) -> str:
+    """Return the message on an object that should be at each of several places, by one of the words ``PLACED``."""
+    verb = PLACED[word]
     return (
-        f"'{thing}' cannot be located at each of '{places}', because '{one}' and '{other}' have no place in common: "
-        f"to mean any of them, write '( var place exists in <{places}> ) such that "
-        f"{{ … <{thing}> is located at <place> … }}'"
+        f"'{thing}' cannot be {verb.removeprefix('is ')} each of '{places}', because '{one}' and '{other}' have "
+        f"no place in common: to mean any of them, write '( var place exists in <{places}> ) such that "
+        f"{{ … <{thing}> {verb} <place> … }}'"
     )
 
 
@@ -87,7 +92,12 @@ def have_nothing_in_common(
     """
     if one == other or carriers.get(one, frozenset()) & carriers.get(other, frozenset()):
         return False
-    return other not in _reached(one, inner) and one not in _reached(other, inner)
+    return not contains(one, other, inner) and not contains(other, one, inner)
+
+
+def contains(outer: Name, one: Name, inner: Mapping[Name, Set[Name]]) -> bool:
+    """Return whether a workspace is inside another one, at any depth."""
+    return one in _reached(outer, inner)
 
 
 def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
@@ -100,14 +110,14 @@ def _reached(start: Name, inner: Mapping[Name, Set[Name]]) -> set[Name]:
     return found
 
 
-def _use(site: Site, thing: str, place: tree.Ref) -> _Use:
+def _use(site: Site, word: str, thing: str, place: tree.Ref) -> _Use:
     variable = site.target(place)
     assert variable is not None
-    return _Use(site, thing, place, variable_key(variable))
+    return _Use(site, word, thing, place, variable_key(variable))
 
 
-_Place = tuple[str, tree.Ref]
-"""An object, and the set variable that is its place."""
+_Place = tuple[str, str, tree.Ref]
+"""The word of a predicate, an object, and the set variable that is its place."""
 
 
 @kept_with_key
@@ -129,12 +139,12 @@ def _found_places(site: Site) -> Iterator[_Place]:
         for phrase in clauses.phrases if site.whole(clauses.node) else ():
             slots = dict(phrase.arguments)
             place, thing = slots.get("workspace"), slots.get("object")
-            if phrase.word == "located-at" and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
+            if phrase.word in PLACED and isinstance(place, tree.Ref) and isinstance(thing, tree.Ref):
                 variable = site.target(place)
                 is_set = variable is not None and variable.kind is SymbolKind.SET_VARIABLE
                 # The clauses are walked only if the place is a set.
                 if is_set and phrase not in set(_lenient(clauses.node)):
-                    yield thing.path, place
+                    yield phrase.word, thing.path, place
 
 
 def _lenient(node: tree.Node) -> Iterator[tree.Node]:
@@ -157,7 +167,7 @@ def _apart(scenario: Scenario, variable: str) -> tuple[tree.Node, str, str] | No
     """Return a value of a set variable and two places in it that have nothing in common."""
     carriers: dict[Key, set[Key]] = {}
     inner: dict[Key, set[Key]] = {}
-    _contents(scenario.site.follow(scenario.variant.scene), carriers, inner, set())
+    contents(scenario.site.follow(scenario.variant.scene), carriers, inner)
     for column in scenario.columns:
         if column.variable is None or variable_key(column.variable) != variable:
             continue
@@ -178,10 +188,14 @@ def _sets(site: Site, written: Iterable[Written]) -> Iterator[tuple[tree.Node, l
             yield value, [element for _, element in written_elements(site, value)]
 
 
-def _contents(
+def contents(site: Site | None, carriers: dict[Key, set[Key]], inner: dict[Key, set[Key]]) -> None:
+    """Collect, for each workspace of a scene, the objects that carry it and the workspaces directly inside it."""
+    _collect(site, carriers, inner, set())
+
+
+def _collect(
     site: Site | None, carriers: dict[Key, set[Key]], inner: dict[Key, set[Key]], seen: set[tuple[str, int]]
 ) -> None:
-    """Collect the contents of the compositions in a scene or in a composition."""
     root = None if site is None else site.tree
     if site is None or not isinstance(root, tree.Scene | tree.Composition) or (site.uri, site.placed.offset) in seen:
         return
@@ -191,7 +205,7 @@ def _contents(
         target = site.target(entry.reference)
         composed = None if target is None else site_of(site.snapshot, target)
         if entry.reference.role == "Composition":
-            _contents(composed, carriers, inner, seen)
+            _collect(composed, carriers, inner, seen)
             if own is not None and composed is not None and isinstance(composed.tree, tree.Composition):
                 part = element_of(composed, composed.tree.workspace)
                 inner.setdefault(own.key, set()).update(() if part is None else (part.key,))

@@ -98,7 +98,7 @@ def place(one: Realisation, staging: Staging, placed: Placed, other: Staging | N
         if robot is not None and base is not None and (other is None or base == other.base(name)):
             placed.agents[name], placed.poses[name] = robot, base
         return
-    model = staging.bystander(name) or staging.object_model(name, carries=False)
+    model = staging.bystander(name) or staging.object_model(name, ())
     pose = staging.pose(name)
     for _ in staging.openings():
         pass  # Raises the faults of openings.

@@ -31,7 +31,8 @@ class Field:
     ``yaw`` (rad) turns the rectangle and the objects; ``skew`` bounds their rotation (rad) from there. ``gap`` and
     ``wall_gap`` are distances (m) to other objects and to bins; in a bin there is no ``wall_gap``. ``base`` is the base
     of the robot that works there. ``obstacles`` are fixed shapes to keep clear of. ``on`` is the carrier's pose with
-    the region above which objects stay, if the rectangle is larger.
+    the region above which objects stay, if the rectangle is larger; if it is ``apart``, such as a nest, what is beside
+    the region is not in the way.
     """
 
     center: tuple[float, float]
@@ -44,6 +45,7 @@ class Field:
     obstacles: tuple[Obstacle, ...] = ()
     on: tuple[Pose, Region] | None = None
     yaw: float = 0.0
+    apart: bool = False
 
     @property
     def is_exact(self) -> bool:
@@ -140,7 +142,8 @@ def _in_the_way(
     field: Field, size: Size, point: tuple[float, float], taken: Sequence[Taken], walls: Sequence[Wall]
 ) -> Iterator[str]:
     """Yield what makes a point unfit."""
-    near = [one.name for one in taken if one.is_near(*point, size.radius + field.gap)]
+    inside = (one for one in taken if not field.apart or field.has(one.x, one.y))
+    near = [one.name for one in inside if one.is_near(*point, size.radius + field.gap)]
     if field.wall_gap is not None:
         near += [one.name for one in walls if one.is_near(*point, size.radius + field.wall_gap)]
     yield from (f"'{name}' is there" for name in near)

@@ -26,17 +26,16 @@ from robbdd_tools.world.moving_parts import (
     name_of_body,
     rigid_root,
 )
-from robbdd_tools.world.region_frames import box_of
 from robbdd_tools.world.solids import inertia_in, shape_in
 from robbdd_tools.world.urdf_files import speeds
+from robbdd_tools.world.workspace_sites import spaces_of_sites, workspace_sites
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from robbdd_tools.catalog.api import FloatArray, Vector
+    from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
 
-SITE = "workspace"
 LIGHTEST = 1e-3
 """Smallest mass (kg) of a loose object, as in a configuration: lighter ones cannot be gripped and put down reliably."""
 
@@ -174,13 +173,13 @@ class FromFile:
     hollow: float
 
 
-def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
+def object_from(spec: Any, source: ModelSource, body_name: str, carried: Sequence[str]) -> FromFile:
     """Return an object from a body of a file, by default the first; raises ``SceneError``.
 
     It consists of the collision shapes of the body and of everything fixed to it, with their friction and colours, and
     its mass is distributed as in the file. A mesh is its convex hull. It can move if the file gives it a free joint or,
-    in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else its
-    inside or the space above it. Bodies with joints are moving parts; their workspaces are box sites.
+    in URDF, a mass. If it carries workspaces, ``carried`` are their names, or is fixed, its workspaces are box sites,
+    else its inside or the space above it. Bodies with joints are moving parts; their workspaces are box sites.
     """
     model = compiled(spec, source)
     body = _body(model, source, body_name)
@@ -190,17 +189,19 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     own = [one for one in range(model.nbody) if rigid_root(model, one, body) is not None]
     refuse_constraints(model, own, source)
     hollow = max(hollow_meshes(model, own).values(), default=0.0)
-    sites = _sites(model, data, (body, *moving), body)
-    refuse_filled(model, data, [one for one in range(model.nsite) if _is_workspace(model, one, own)], own, source)
-    parts = tuple(_part(model, data, one, body, source, sites) for one in moving)
+    sites = workspace_sites(model, own, carried)
+    refuse_filled(model, data, sites, own, source)
+    spaces = spaces_of_sites(model, data, sites, (body, *moving), body)
+    parts = tuple(_part(model, data, one, body, source, spaces) for one in moving)
     main = _Rigid(model, data, body, body, source)
     low, _ = bounds_of(main.shapes)
     free = is_free(model, body) if source.format != "urdf" else float(model.body_mass[body]) > 0
     jointed = not free and bool(int(model.body_jntnum[body]))
     if free:
         _refuse_light(main.mass, source)
-    own = next((region for region in sites.get(body, ()) if not region.name and (carries or not free)), None)
-    if own is None and (carries or not free) and not sites and not jointed:
+    own = next((region for region in spaces.get(body, ()) if not region.name and (carried or not free)), None)
+    # A fixed thing with several workspaces is a table, too, for what has no place of its own.
+    if own is None and (carried or not free) and not jointed and not (spaces and (moving or free)):
         own = own_space(main.shapes)
     chosen = ObjectModel(
         name=source.iri,
@@ -209,12 +210,12 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         mass=max(main.mass, LIGHTEST),
         friction=main.friction,
         free=free,
-        graspable=free and not carries and not parts,
+        graspable=free and not carried and not parts,
         rest_height=-float(low[2]),
         color=main.color,
         doc=f"from {source.name}",
         region=None if own is None else with_walls(own, main.shapes),
-        parts=tuple(region for region in sites.get(body, ()) if region.name),
+        parts=tuple(region for region in spaces.get(body, ()) if region.name),
         joint=replace(joint_of(model, data, body, 0, source), handle=main.handle) if jointed else None,
         inertia=main.inertia if free or jointed else None,
     )
@@ -307,39 +308,6 @@ def _body(model: Any, source: ModelSource, name: str) -> int:
     if name and name not in names:
         raise SceneError(f"{source.name} has no body '{name}'; it has {', '.join(names)}", origin=source.origin)
     return names.index(name) + 1 if name else 1
-
-
-def _sites(model: Any, data: Any, movers: Sequence[int], root: int) -> Mapping[int, tuple[Region, ...]]:
-    """Map each moving body of an object to its workspaces, which are sites in the file.
-
-    An object with moving parts may have several workspaces: the part of a site's name before 'workspace' is the
-    region's name, unless there is only one site. An object without moving parts has only the first workspace.
-    """
-    found: list[tuple[int, Region]] = []
-    for site in range(model.nsite):
-        name = str(model.site(site).name)
-        body = rigid_root(model, int(model.site_bodyid[site]), root) if name.endswith(SITE) else None
-        if body is None:
-            continue
-        frame = data.xmat[body].reshape(3, 3)
-        center = frame.T @ (data.site_xpos[site] - data.xpos[body])
-        half, turn = box_of(model.site_size[site], frame.T @ data.site_xmat[site].reshape(3, 3))
-        part = name.removesuffix(SITE).strip(" _-.").lower()
-        found.append((body, Region(_vector(center), _vector(half), part, turn=turn)))
-    if len(movers) == 1:
-        del found[1:]
-    if len(found) == 1:
-        found = [(body, replace(region, name="")) for body, region in found]
-    return {body: tuple(region for one, region in found if one == body) for body in movers if found}
-
-
-def _is_workspace(model: Any, site: int, bodies: Sequence[int]) -> bool:
-    return str(model.site(site).name).endswith(SITE) and int(model.site_bodyid[site]) in bodies
-
-
-def _vector(numbers: Any) -> Vector:
-    x, y, z = (float(number) for number in numbers)
-    return (x, y, z)
 
 
 def _color(numbers: Any) -> tuple[float, float, float, float]:

@@ -228,7 +228,8 @@ def _fields(
     bottom = z - region.half[2]
     if radius > min(region.half[:2]) and name not in cast.ranges:
         for turn, room in _along_edges(cast.objects[name], region):
-            yield Field((x, y), room, bottom, 0.0, TOUCHING, None, base, yaw=yaw + turn)
+            on = (pose, region)
+            yield Field((x, y), room, bottom, 0.0, TOUCHING, None, base, on=on, yaw=yaw + turn, apart=True)
     if can_move(model) or region.walled:
         inner = (half[0] - radius, half[1] - radius)
         if region.walled:

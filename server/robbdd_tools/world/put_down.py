@@ -44,6 +44,10 @@ class Floor:
         x, y, c, s = position[0] - self.center[0], position[1] - self.center[1], cos(self.yaw), sin(self.yaw)
         return c * x + s * y, c * y - s * x
 
+    def has(self, x: float, y: float) -> bool:
+        """Return whether a point (m) is above the floor."""
+        return all(abs(way) <= half for way, half in zip(self.at((x, y, 0.0)), self.half, strict=True))
+
 
 @dataclass(frozen=True, slots=True)
 class Target:
@@ -81,13 +85,18 @@ def on_tables(simulation: Simulation, robot: Robot, name: str) -> Iterator[Targe
 
 
 def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
-    """Return whether an object has room between the loose objects at some place of a workspace."""
+    """Return whether an object has room between the loose objects at some place of a workspace.
+
+    In a place that is too narrow to turn the object, such as a nest, what is beside the place is not in the way.
+    """
     radius = footprint(simulation.world.cast.objects[name])
     for carrier, _ in simulation.world.cast.regions.get(workspace, ()):
         others = _others(simulation, name, carrier)
-        places = targets(simulation, robot, name, workspace)
-        if any(_room(*place.position[:2], others) >= radius for place in places):
-            return True
+        for place in targets(simulation, robot, name, workspace):
+            is_nest = radius > min(place.floor.half)
+            near = [one for one in others if place.floor.has(*one[:2])] if is_nest else others
+            if _room(*place.position[:2], near) >= radius:
+                return True
     return False
 
 

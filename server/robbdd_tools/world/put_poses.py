@@ -101,24 +101,20 @@ class PutPoses:
         raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}{missed}")
 
     def onto(self, target: Target, missed: Obstruction) -> PutDown | None:
-        """Return the lowest pose over a place that the arm reaches; ``missed`` records why it reaches none.
+        """Return the lowest pose over a place, or ``None`` if the arm does not reach it; ``missed`` records why.
 
         The object is turned if it does not fit as it comes, or if the hand has no room beside it there.
         """
-        lowest: PutDown | None = None
         usual, *_ = closings = self._closings(target)
-        for closing in closings:
-            if not self._fits(closing, target):
-                continue
+        fitting = [closing for closing in closings if self._fits(closing, target)]
+        lowest: PutDown | None = None
+        for closing in fitting or [usual]:
             found = self._lowered(closing, target, missed)
             if found is not None and found.is_snug:
-                return found
+                return replace(found, is_snug=bool(fitting))
             if found is not None and (lowest is None or found.pose.height < lowest.pose.height):
                 lowest = found
-        if lowest is not None:
-            return lowest
-        found = self._lowered(usual, target, missed)
-        return found and replace(found, is_snug=False)
+        return lowest
 
     def carried_to(self, pose: ToolPose) -> ToolPose:
         """Return the pose above ``pose`` to which the tool carries the object, high enough to clear shapes below."""

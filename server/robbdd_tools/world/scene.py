@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Region, RobotModel
+from robbdd_tools.catalog.name_words import parts_named, spaces_of
 from robbdd_tools.catalog.object_settings import can_move, object_has
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.cast import Cast
@@ -50,13 +51,13 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None, *, of_log: bool
     by_name: list[str] = []
     # Sorted: results must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects) if staging is None else staging.carriers_first(scene.objects):
-        carries = any(name in own for own in scene.workspaces.values())
-        model = None if staging is None else staging.object_model(name, carries)
+        carried = tuple(local_name(workspace) for workspace, own in scene.workspaces.items() if name in own)
+        model = None if staging is None else staging.object_model(name, carried)
         if model is None and (model := catalog.object_for(local_name(name), scene.sets.get(name, ()))) is not None:
             by_name.append(name)
         if model is not None:
             objects[name] = model
-        elif of_log and (carries or name not in scene.unused):
+        elif of_log and (carried or name not in scene.unused):
             points[name] = "object"
         elif name in scene.unused:
             left_out.append(name)
@@ -240,9 +241,10 @@ def _spaces(carrier: str, workspace: str, objects: Mapping[str, ObjectModel]) ->
     """
     members = moving_with(carrier, objects)
     if len(members) == 1:
-        return [(carrier, region) for region in objects[carrier].spaces(workspace)]
+        return [(carrier, region) for region in spaces_of(objects[carrier], local_name(workspace))]
     every = [(one, part) for one in members for part in objects[one].parts]
-    named = [(one, part) for one, part in every if part.name in workspace.lower()]
+    names = parts_named([part.name for _, part in every], local_name(workspace))
+    named = [(one, part) for one, part in every if part.name in names]
     plain = [(one, region) for one in members if (region := objects[one].region) is not None]
     return named or plain or every
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from math import atan2
@@ -116,15 +116,16 @@ class Staging:
                     return True
         return False
 
-    def object_model(self, element: str, carries: bool) -> ObjectModel | None:
+    def object_model(self, element: str, carried: Sequence[str]) -> ObjectModel | None:
         """Return the model of an object, ``None`` if not defined; raises ``SceneError``.
 
-        ``carries`` means that it carries a workspace. An element without a model is the moving part of the same name of
-        an object that was requested before, or else the body of the same name in a model of the whole scene.
+        ``carried`` are the names of the workspaces that it carries. An element without a model is the moving part of
+        the same name of an object that was requested before, or else the body of the same name in a model of the whole
+        scene.
         """
         chosen = self._source(element)
         if chosen is None:
-            return self._part(element) or self._from_world(element, carries)
+            return self._part(element) or self._from_world(element, carried)
         if chosen.kind == "catalog":
             found = load_catalog().objects.get(chosen.name)
             if found is None:
@@ -135,7 +136,7 @@ class Staging:
             return found
         name = next((name for _, name in chosen.bodies), "")
         # A pose in a file of its own is meaningless in the scene.
-        self._files[element] = object_from(load(chosen), chosen, name, carries)
+        self._files[element] = object_from(load(chosen), chosen, name, carried)
         return self._files[element].model
 
     def moving_parts(self) -> Iterator[tuple[str, ObjectModel]]:
@@ -275,13 +276,13 @@ class Staging:
         said: Realisation | None = self._elements.get(element)
         return None if said is None else usable(said.models, element)
 
-    def _from_world(self, element: str, carries: bool) -> ObjectModel | None:
+    def _from_world(self, element: str, carried: Sequence[str]) -> ObjectModel | None:
         name = element.rpartition(":")[2]
         if element in self._found:
             return self._found[element].model
         for number, (source, spec) in enumerate(self._worlds):
             if spec.body(name) is not None:
-                self._found[element] = self._files[element] = object_from(spec, source, name, carries)
+                self._found[element] = self._files[element] = object_from(spec, source, name, carried)
                 self._world_of[element] = number
                 spec.delete(spec.body(name))
                 return self._found[element].model
