@@ -1,40 +1,47 @@
-"""``catalog-models``: list the catalog models of a scene that has no executable scene.
-
-The names of elements select these models.
-"""
+"""``catalog-models``: list the elements that have a model of the catalog only because of their names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.no_model import not_modelled
 from robbdd_tools.names.elements import Element, Site, simulated_members
 from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
 
 
 def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report the models of the elements of each scene, once for each scene.
-
-    A scene is skipped if a loaded executable scene defines its models.
-    """
+    """Report the catalog models of each scene without a loaded executable scene, and of each executable scene."""
     for placed in file.of(tree.Scene):
         scene = placed.declaration.tree
-        if not isinstance(scene, tree.Scene) or has_executable_scene(snapshot, scene.name.text):
-            continue
-        chosen = _chosen(simulated_members(Site(snapshot, file, placed)))
-        if chosen:
-            named = "; ".join(f"{', '.join(names)} as {model}" for model, names in sorted(chosen.items()))
-            message = f"without a .scenex this scene runs on models of the catalog, by name: {named}"
-            span = scene.name.span.shifted(placed.offset)
-            yield Diagnostic(file.document.uri, span, Severity.INFORMATION, "catalog-models", message)
+        if isinstance(scene, tree.Scene) and not has_executable_scene(snapshot, scene.name.text):
+            members = simulated_members(Site(snapshot, file, placed))
+            yield from _listed(file, placed, scene.name, "without a .scenex this scene runs on models", members)
+    for placed in file.of(tree.SceneInstance):
+        instance, site = placed.declaration.tree, Site(snapshot, file, placed)
+        scene_site = site.follow(instance.scene) if isinstance(instance, tree.SceneInstance) else None
+        if isinstance(instance, tree.SceneInstance) and scene_site is not None:
+            left = not_modelled(simulated_members(scene_site), [site])
+            yield from _listed(file, placed, instance.name, "what has no model here runs on models", left)
+
+
+def _listed(
+    file: FileAnalysis, placed: PlacedDeclaration, name: tree.Name, what: str, members: Iterable[Element]
+) -> Iterator[Diagnostic]:
+    chosen = _chosen(members)
+    if chosen:
+        named = "; ".join(f"{', '.join(names)} as {model}" for model, names in sorted(chosen.items()))
+        message = f"{what} of the catalog, by name: {named}"
+        span = name.span.shifted(placed.offset)
+        yield Diagnostic(file.document.uri, span, Severity.INFORMATION, "catalog-models", message)
 
 
 def has_executable_scene(snapshot: Snapshot, scene: str) -> bool:
@@ -51,7 +58,7 @@ def _executable_scenes(snapshot: Snapshot) -> frozenset[str]:
     return frozenset(root.scene.path for root in roots if isinstance(root, tree.SceneInstance))
 
 
-def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:
+def _chosen(members: Iterable[Element]) -> dict[str, list[str]]:
     """Return a map from each model to the names of its elements."""
     catalog = load_catalog()
     found: dict[str, list[str]] = {}

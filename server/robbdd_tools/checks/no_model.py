@@ -5,7 +5,7 @@ A run cannot judge a scenario that uses the element. Other scenarios leave the e
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -61,16 +61,19 @@ def gaps_of(scene: Site) -> list[Gap]:
     unfit = [element for element in sorted(simulated_members(scene), key=lambda one: one.key) if not _fits(element)]
     if not unfit:
         return []
-    instances = list(scene_instances(scene))
+    found: dict[Span, list[Element]] = {}
+    for element in not_modelled(unfit, list(scene_instances(scene))):
+        found.setdefault(place_of(scene, element), []).append(element)
+    return [Gap(scene, span, tuple(found[span])) for span in sorted(found)]
+
+
+def not_modelled(elements: Iterable[Element], instances: Sequence[Site]) -> list[Element]:
+    """Return the elements that no executable scene gives a model; none if a model of a whole scene may do so."""
     if any(_may_have_all(instance) for instance in instances):
         return []
     modelled = frozenset[Key]().union(*map(_modelled, instances))
     bodies = frozenset[str]().union(*map(_bodies, instances))
-    found: dict[Span, list[Element]] = {}
-    for element in unfit:
-        if element.key not in modelled and _local(element) not in bodies:
-            found.setdefault(place_of(scene, element), []).append(element)
-    return [Gap(scene, span, tuple(found[span])) for span in sorted(found)]
+    return [element for element in elements if element.key not in modelled and _local(element) not in bodies]
 
 
 def scene_instances(scene: Site) -> Iterator[Site]:
