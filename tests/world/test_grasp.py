@@ -10,7 +10,7 @@ import pytest
 from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import BehaviourError
-from robbdd_tools.world.grasp import finger_grasps, suction_grasps
+from robbdd_tools.world.grasp import Grasp, finger_grasps, suction_grasps
 
 OBJECTS = load_catalog().objects
 AT = np.array([0.4, 0.1, 0.2])
@@ -121,3 +121,9 @@ def test_a_cup_takes_hold_on_the_top() -> None:
 def test_what_is_smaller_than_the_cup_is_explained() -> None:
     with pytest.raises(BehaviourError, match=r"bolt is 0\.020 m wide, the suction cup 0\.030 m"):
         suction_grasps("bolt", thing(ShapeKind.BOX, 0.01, 0.02, 0.01), AT, UPRIGHT, 0.03)
+
+
+def test_a_grasp_may_be_higher_as_long_as_the_fingers_hold_enough() -> None:
+    grasp = Grasp(np.array([0.1, 0.2, 0.3]), 0.5, 0.04, below=0.01, depth=0.019)
+    found = [(float(one.position[2]), one.below, one.depth) for one in grasp.higher()]
+    assert found == [pytest.approx((0.305, 0.015, 0.014)), pytest.approx((0.31, 0.02, 0.009))]

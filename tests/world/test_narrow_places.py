@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, hypot, pi, radians, sin
+from math import atan2, cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, Origin, Realisation
 from robbdd_tools.catalog.objects.box import BOX as CARTON
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.extent import half_sides, outline_of
@@ -21,9 +21,10 @@ from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.space_remarks import space_remarks
 from world.scene_instances import catalog, file, instance, link
-from world.worlds import PANDA, pick_place, scenario
+from world.worlds import BIN, BIN_WS, CUBE, PANDA, pick_place, scenario
 
 BOX, NEST, NEST_WS, BENCH, BENCH_WS = "env:box1", "env:nest", "env:nest_ws", "env:bench", "env:bench_ws"
+SECOND, OTHER, OTHER_WS = "env:box2", "env:other", "env:other_ws"
 SITE = '<site name="workspace" type="box" size="{} {} .04" pos="0 0 .06"/>'
 BED = '<geom type="box" size=".06 .06 .01" pos="0 0 .01"/>'
 WALLS = """
@@ -35,22 +36,53 @@ POCKET = BED + WALLS + SITE.format(0.035, 0.027)
 """A pocket of 70 × 54 mm, 12 mm deep, for the box of 60 × 44 mm."""
 VISE = BED + JAWS + SITE.format(0.026, 0.06)
 """Two jaws of 50 mm height, 52 mm apart."""
+WIDE_VISE = BED + JAWS.replace(".036", ".044") + SITE.format(0.034, 0.025)
+"""Two jaws that are 68 mm apart, with a place for the longer side of the box between them."""
+BUILT_IN = Implementation("x:own", "catalog", "pick-place")
 
 
 def cell(
-    folder: Path, nest: str, degrees: float, seed: int, arm: str = "franka-panda", unload: bool = False
+    folder: Path,
+    nest: str,
+    degrees: float,
+    seed: int,
+    arm: str = "franka-panda",
+    unload: bool = False,
+    goal: str = "",
+    beside: tuple[float, float, float] | None = None,
 ) -> Execution:
-    """Return an execution in which an arm puts a box into a nest that is turned, or takes it out of there."""
-    text = f'<mujoco><worldbody><body name="nest">{nest}</body></worldbody></mujoco>'
+    """Return an execution in which an arm puts a box into a nest that is turned, or takes it out of there.
+
+    ``goal`` is another nest into which it is put from the first one; ``beside`` is the place (m) of a second box.
+    """
     half = radians(degrees) / 2
-    place = link("x:g.nest.foot", (0.45, -0.15, 0.1), turn=(cos(half), 0.0, 0.0, sin(half)))
-    elements = (file(folder, NEST, text, ("x:g.nest", "nest")), catalog(PANDA, arm))
-    start, goal = (NEST_WS, BENCH_WS) if unload else (BENCH_WS, NEST_WS)
-    scene = SceneSpec((BOX, NEST, BENCH), (PANDA,), {NEST_WS: (NEST,), BENCH_WS: (BENCH,)}, {}, places={BOX: start})
-    execution = ExecutionSpec(
-        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(place, elements=elements)
-    )
-    return Execution(replace(scenario(scene, seed), execution=execution), [pick_place(BOX, goal)])
+    links = [link("x:g.nest.foot", (0.45, -0.15, 0.1), turn=(cos(half), 0.0, 0.0, sin(half)))]
+    elements = [nest_of(folder, NEST, nest, "nest"), catalog(PANDA, arm)]
+    carriers = {NEST_WS: (NEST,), BENCH_WS: (BENCH,)}
+    start, end = (NEST_WS, BENCH_WS) if unload else (BENCH_WS, NEST_WS)
+    objects = [BOX, NEST, BENCH]
+    if goal:
+        links.append(link("x:g.other.foot", (0.45, 0.25, 0.1)))
+        elements.append(nest_of(folder, OTHER, goal, "other"))
+        carriers[OTHER_WS] = (OTHER,)
+        start, end = NEST_WS, OTHER_WS
+        objects.append(OTHER)
+    if beside is not None:
+        links.append(link("x:g.second.foot", beside))
+        elements.append(catalog(SECOND, "box", "x:g.second"))
+        objects.append(SECOND)
+    scene = SceneSpec(tuple(objects), (PANDA,), carriers, {}, places={BOX: start})
+    spec = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(*links, elements=tuple(elements)))
+    return Execution(replace(scenario(scene, seed), execution=spec), [pick_place(BOX, end)])
+
+
+def nest_of(folder: Path, element: str, shapes: str, name: str) -> Realisation:
+    """Write a fixed body with these shapes, and return it as the model of an element."""
+    (folder / name).mkdir(exist_ok=True)
+    text = f'<mujoco><worldbody><body name="{name}">{shapes}</body></worldbody></mujoco>'
+    (made,) = file(folder / name, element, text, (f"x:g.{name}", name)).models
+    origin = Origin(str(folder / "cell.scenex"), 7, 11)
+    return Realisation(element, (replace(made, iri=f"x:{name}", name=f"{name}/{made.name}", origin=origin),))
 
 
 def room(simulation: Simulation) -> float:
@@ -99,7 +131,7 @@ def test_all_of_a_small_place_is_tried(tmp_path: Path) -> None:
     spec = ExecutionSpec(
         "x:run",
         "x:run",
-        Implementation("x:own", "catalog", "pick-place"),
+        BUILT_IN,
         instance(link("x:g.nest.foot", (0.24, 0.0, 0.1)), elements=(element,)),
     )
     simulation = Execution(replace(scenario(scene, 1), execution=spec), [pick_place(BOX, NEST_WS)]).simulation
@@ -151,9 +183,7 @@ def filled(folder: Path, suffix: str = "", count: int = 3, starts: tuple[str, ..
     slots = dict.fromkeys(SLOTS, (MAGAZINE,))
     places = dict(zip(BOXES, starts, strict=False))
     scene = SceneSpec((*places, MAGAZINE, BENCH), (PANDA,), {**slots, BENCH_WS: (BENCH,)}, {}, places=places)
-    execution = ExecutionSpec(
-        "x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance(place, elements=(element,))
-    )
+    execution = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(place, elements=(element,)))
     call = replace(pick_place(BOXES[0]), arguments={"agent": PANDA, "object": BOXES[0], "workspace": SLOTS})
     return Execution(replace(scenario(scene), execution=execution), [call])
 
@@ -195,3 +225,72 @@ def test_a_run_says_which_workspace_is_all_spaces_of_an_object(tmp_path: Path) -
     cast = filled(tmp_path, count=2, starts=(BENCH_WS,)).simulation.world.cast
     remarks = dict(space_remarks(SLOTTED, cast))
     assert remarks == {SLOTS[2]: "all workspaces of 'env:magazine', as no site of its model has this name"}
+
+
+def test_a_site_that_is_no_box_is_no_workspace(tmp_path: Path) -> None:
+    text = magazine("").replace('name="slot_1" type="box"', 'name="slot_1" type="sphere"')
+    element = file(tmp_path, MAGAZINE, text, ("x:g.magazine", "magazine"))
+    spec = ExecutionSpec(
+        "x:run", "x:run", BUILT_IN, instance(link("x:g.magazine.foot", (0.5, 0.1, 0.1)), elements=(element,))
+    )
+    scene = SceneSpec((MAGAZINE, BENCH), (PANDA,), dict(SLOTTED.workspaces), {})
+    cast = Execution(replace(scenario(scene), execution=spec), []).simulation.world.cast
+    assert [len(cast.regions[slot]) for slot in SLOTS] == [2, 1, 1]
+
+
+def test_a_run_says_nothing_of_workspaces_inside_of_one_another_and_of_the_boards_of_a_shelf() -> None:
+    shelf = {"env:shelf_ws": ("env:shelf1",), "env:board_ws": ("env:shelf1",)}
+    scene = SceneSpec(("env:shelf1", BENCH), (PANDA,), shelf, {"env:shelf_ws": ("env:board_ws",)})
+    assert not dict(space_remarks(scene, Execution(scenario(scene), []).simulation.world.cast))
+
+
+def test_a_table_with_several_workspaces_carries_what_has_no_place_of_its_own(tmp_path: Path) -> None:
+    text = """<mujoco><worldbody><body name="bench"><geom type="box" size=".3 .6 .02"/>
+    <site name="left_ws" type="box" size=".3 .3 .1" pos="0 .3 .12"/>
+    <site name="right_ws" type="box" size=".3 .3 .1" pos="0 -.3 .12"/></body></worldbody></mujoco>"""
+    element = file(tmp_path, BENCH, text, ("x:g.bench", "bench"))
+    spec = ExecutionSpec(
+        "x:run", "x:run", BUILT_IN, instance(link("x:g.bench.foot", (0.5, 0.0, 0.1)), elements=(element,))
+    )
+    scene = SceneSpec((BOX, BENCH), (PANDA,), {"env:left_ws": (BENCH,), "env:right_ws": (BENCH,)}, {})
+    simulation = Execution(replace(scenario(scene), execution=spec), []).simulation
+    assert simulation.pose(BOX)[0][2] == pytest.approx(0.14, abs=2e-3)
+    ((_, left),), ((_, right),) = (simulation.world.cast.regions[one] for one in scene.workspaces)
+    assert (left.center[1], right.center[1]) == pytest.approx((0.3, -0.3))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_a_part_is_gripped_so_that_the_hand_has_room_at_its_goal(tmp_path: Path, seed: int) -> None:
+    """Between the jaws there is no room for fingers: the part is gripped by its other sides, and not dropped."""
+    run = cell(tmp_path, VISE, 30.0, seed)
+    assert run.run_behaviour(0), run.trace.remark
+    begun = next(event.time for event in run.trace.events if event.name == "t:place-start")
+    tool = run.trace.positions[run.trace.times >= begun, run.trace.names.index(PANDA)]
+    assert tool[:, 2].min() < 0.16, "the jaws are 0.17 m high"
+
+
+@pytest.mark.physics
+def test_where_the_hand_has_no_room_at_the_start_it_does_not_grip_for_the_goal(tmp_path: Path) -> None:
+    run = cell(tmp_path, VISE, 0.0, 1, goal=WIDE_VISE)
+    assert run.run_behaviour(0), run.trace.remark
+
+
+@pytest.mark.physics
+def test_a_part_is_put_into_the_middle_of_a_nest_even_if_there_is_more_room_beside_it(tmp_path: Path) -> None:
+    run = cell(tmp_path, POCKET, 0.0, 1, beside=(0.55, -0.15, 0.12))
+    assert run.run_behaviour(0), run.trace.remark
+    assert room(run.simulation) > 0.0
+
+
+def test_things_in_a_turned_bin_lie_along_its_edges() -> None:
+    half = radians(30.0) / 2
+    place = link("x:g.bin.foot", (0.5, 0.1, 0.1), turn=(cos(half), 0.0, 0.0, sin(half)))
+    spec = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(place, elements=(catalog(BIN, "bin", "x:g.bin"),)))
+    scene = SceneSpec((CUBE, BIN, BENCH), (PANDA,), {BIN_WS: (BIN,)}, {}, places={CUBE: BIN_WS})
+    for seed in range(1, 6):
+        simulation = Execution(replace(scenario(scene, seed), execution=spec), []).simulation
+        (_, cube), (_, bin_turn) = simulation.pose(CUBE), simulation.pose(BIN)
+        along = bin_turn.T @ cube
+        yaw = atan2(along[1, 0], along[0, 0])
+        assert abs(yaw - pi / 2 * round(yaw / (pi / 2))) < 0.21

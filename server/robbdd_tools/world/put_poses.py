@@ -47,10 +47,7 @@ class Grip:
 
 @dataclass(frozen=True, slots=True)
 class PutDown:
-    """A tool pose that puts an object down.
-
-    ``is_snug`` means that the object fits its place and is released just above it.
-    """
+    """A tool pose that puts an object down; ``is_snug`` if it is released just above its place."""
 
     pose: ToolPose
     is_snug: bool
@@ -106,15 +103,13 @@ class PutPoses:
         The object is turned if it does not fit as it comes, or if the hand has no room beside it there.
         """
         usual, *_ = closings = self._closings(target)
-        fitting = [closing for closing in closings if self._fits(closing, target)]
-        lowest: PutDown | None = None
-        for closing in fitting or [usual]:
+        first: PutDown | None = None
+        for closing in [closing for closing in closings if self._fits(closing, target)] or [usual]:
             found = self._lowered(closing, target, missed)
             if found is not None and found.is_snug:
-                return replace(found, is_snug=bool(fitting))
-            if found is not None and (lowest is None or found.pose.height < lowest.pose.height):
-                lowest = found
-        return lowest
+                return found
+            first = first or found
+        return first
 
     def carried_to(self, pose: ToolPose) -> ToolPose:
         """Return the pose above ``pose`` to which the tool carries the object, high enough to clear shapes below."""
