@@ -12,11 +12,13 @@ import pytest
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, Origin, Realisation
 from robbdd_tools.catalog.objects.box import BOX as CARTON
-from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
+from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
+from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import half_sides, outline_of
 from robbdd_tools.world.free_places import Field
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.put_down import Floor, targets
+from robbdd_tools.world.reaching import approaches
 from robbdd_tools.world.region_frames import along_edges
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.space_remarks import space_remarks
@@ -50,6 +52,7 @@ def cell(
     unload: bool = False,
     goal: str = "",
     beside: tuple[float, float, float] | None = None,
+    config: tuple[ConfigSpec, ...] = (),
 ) -> Execution:
     """Return an execution in which an arm puts a box into a nest that is turned, or takes it out of there.
 
@@ -71,7 +74,7 @@ def cell(
         links.append(link("x:g.second.foot", beside))
         elements.append(catalog(SECOND, "box", "x:g.second"))
         objects.append(SECOND)
-    scene = SceneSpec(tuple(objects), (PANDA,), carriers, {}, places={BOX: start})
+    scene = SceneSpec(tuple(objects), (PANDA,), carriers, {}, config=config, places={BOX: start})
     spec = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(*links, elements=tuple(elements)))
     return Execution(replace(scenario(scene, seed), execution=spec), [pick_place(BOX, end)])
 
@@ -294,3 +297,17 @@ def test_things_in_a_turned_bin_lie_along_its_edges() -> None:
         along = bin_turn.T @ cube
         yaw = atan2(along[1, 0], along[0, 0])
         assert abs(yaw - pi / 2 * round(yaw / (pi / 2))) < 0.21
+
+
+def test_a_range_takes_precedence_over_a_nest(tmp_path: Path) -> None:
+    config = (ConfigSpec(BOX, "position_range", "0.30 0.34 0.10 0.14"),)
+    with pytest.raises(SceneError, match="no part of 'env:nest', where 'env:box1' should be, is within reach"):
+        cell(tmp_path, VISE, 0.0, 1, unload=True, config=config)
+
+
+def test_a_grasp_that_is_free_at_no_height_stays_the_deepest(tmp_path: Path) -> None:
+    deep = POCKET.replace(".006", ".018").replace(".026", ".038")
+    simulation = cell(tmp_path, deep, 0.0, 1, unload=True).simulation
+    found = list(approaches(simulation, simulation.robots[PANDA], BOX))
+    assert found
+    assert all(one.depth > 0.0 and one.grasp.depth == pytest.approx(0.02) for one in found)
