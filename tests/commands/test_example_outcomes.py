@@ -73,3 +73,16 @@ def test_an_example_passes_and_fails_for_the_reason_that_it_names(
 
 OTHERS = ("violated", "unknown")
 """Verdicts of clauses that do not hold."""
+
+
+def test_a_billet_is_put_into_the_vise_and_lost_if_the_jaws_press_too_little(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(shutil.copytree(EXAMPLES / "tending", tmp_path / "tending"))
+    assert main(["run", "tending.bddx", "--json", "run.json"]) == 1
+    document: Any = json.loads(Path("run.json").read_text(encoding="utf-8"))
+    loaded, other, lost = ({one["name"]: one for one in scenario["clauses"]} for scenario in document["scenarios"])
+    assert {one["verdict"] for one in (*loaded.values(), *other.values())} == {"holds"}
+    assert lost["when-bhv-load-vise.when"]["verdict"] == "violated"
+    assert "its weight is 3.18 N, and its friction in the fingers bears 2.4 N" in lost["when-bhv-load-vise.when"]["reason"]
+    assert {name for name, one in lost.items() if one["verdict"] == "unknown"} == {"in-vise", "level", "in-time"}
