@@ -83,6 +83,7 @@ def test_a_billet_is_put_into_the_vise_and_lost_if_the_jaws_press_too_little(
     document: Any = json.loads(Path("run.json").read_text(encoding="utf-8"))
     loaded, other, lost = ({one["name"]: one for one in scenario["clauses"]} for scenario in document["scenarios"])
     assert {one["verdict"] for one in (*loaded.values(), *other.values())} == {"holds"}
-    assert lost["when-bhv-load-vise.when"]["verdict"] == "violated"
-    assert "its weight is 3.18 N, and its friction in the fingers bears 2.4 N" in lost["when-bhv-load-vise.when"]["reason"]
+    behaviour = lost["when-bhv-load-vise.when"]
+    assert behaviour["verdict"] == "violated"
+    assert "its weight is 3.18 N, and its friction in the fingers bears 2.4 N" in behaviour["reason"]
     assert {name for name, one in lost.items() if one["verdict"] == "unknown"} == {"in-vise", "level", "in-time"}
