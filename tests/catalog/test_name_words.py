@@ -9,6 +9,7 @@ from robbdd_tools.catalog.name_words import is_named, parts_named, words_of
 
 def test_names_are_split_at_humps_separators_and_numbers() -> None:
     assert words_of("upperLeft_slot-12b") == ["upper", "left", "slot", "12", "b"]
+    assert words_of("Größe_3 架") == ["größe", "3", "架"]
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ _SHORTEST = 3
 
 def words_of(name: str) -> list[str]:
     """Return the words and numbers of a name in lower case: ``slotB2`` is slot, b, 2."""
-    return re.findall(r"[a-z]+|[0-9]+", _HUMP.sub(" ", name).lower())
+    return re.findall(r"[^\W\d_]+|\d+", _HUMP.sub(" ", name).lower())
 
 
 def is_named(site: str, workspace: str) -> bool:
