@@ -90,6 +90,6 @@ def test_a_pose_is_looked_at_again_when_its_distribution_changes() -> None:
     text = INSTANCE.partition("\n")[2].replace("3 lower: (0, 0, 0) upper: (1, 1, 1)", "2 lower: (0, 0) upper: (1, 1)")
     case.project.open(case.uri, 2, text)
     after = fast_diagnostics(case.project.snapshot(), case.uri)
-    (told,) = (entry for entry in after if entry.code != "catalog-models")
-    assert text[told.span.start : told.span.end] == "sample <spread>"
+    (reported,) = (entry for entry in after if entry.code != "catalog-models")
+    assert text[reported.span.start : reported.span.end] == "sample <spread>"
     assert [entry.code for entry in before] == ["catalog-models"]

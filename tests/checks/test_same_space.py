@@ -1,4 +1,4 @@
-"""Workspaces of one object that are the same space are reported, unless something tells them apart."""
+"""Workspaces of one object that are the same space are reported, unless a box or a model distinguishes them."""
 
 from __future__ import annotations
 

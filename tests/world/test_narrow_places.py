@@ -311,3 +311,16 @@ def test_a_grasp_that_is_free_at_no_height_stays_the_deepest(tmp_path: Path) -> 
     found = list(approaches(simulation, simulation.robots[PANDA], BOX))
     assert found
     assert all(one.depth > 0.0 and one.grasp.depth == pytest.approx(0.02) for one in found)
+
+
+def test_a_workspace_without_a_site_of_its_name_is_the_site_workspace(tmp_path: Path) -> None:
+    whole = '<site name="workspace" type="box" size=".05 .09 .05" pos="0 0 .07"/></body>'
+    text = magazine("", 2).replace("</body>", whole)
+    element = file(tmp_path, MAGAZINE, text, ("x:g.magazine", "magazine"))
+    place = link("x:g.magazine.foot", (0.5, 0.1, 0.1))
+    spec = ExecutionSpec("x:run", "x:run", BUILT_IN, instance(place, elements=(element,)))
+    scene = SceneSpec((MAGAZINE, BENCH), (PANDA,), dict(SLOTTED.workspaces), {})
+    cast = Execution(replace(scenario(scene), execution=spec), []).simulation.world.cast
+    found = {slot: [region.half[1] for _, region in cast.regions[slot]] for slot in SLOTS}
+    assert found == {SLOTS[0]: [0.0255], SLOTS[1]: [0.0255], SLOTS[2]: [0.09]}
+    assert not dict(space_remarks(SLOTTED, cast))

@@ -46,10 +46,14 @@ def parts_named(parts: Sequence[str], workspace: str) -> frozenset[str]:
 
 
 def spaces_of(model: ObjectModel, workspace: str) -> tuple[Region, ...]:
-    """Return the regions of a workspace: the parts that its name contains, else all parts, else the only region."""
+    """Return the regions of a workspace: the parts that its name contains, else the part without a name.
+
+    Without either, these are all parts, or the only region.
+    """
     names = parts_named([part.name for part in model.parts], workspace)
     named = tuple(part for part in model.parts if part.name in names)
-    return named or model.parts or (() if model.region is None else (model.region,))
+    unnamed = tuple(part for part in model.parts if not part.name)
+    return named or unnamed or model.parts or (() if model.region is None else (model.region,))
 
 
 def _without_space(words: list[str]) -> list[str]:

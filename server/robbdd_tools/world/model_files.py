@@ -215,7 +215,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carried: Sequenc
         color=main.color,
         doc=f"from {source.name}",
         region=None if own is None else with_walls(own, main.shapes),
-        parts=tuple(region for region in spaces.get(body, ()) if region.name),
+        parts=spaces.get(body, ()) if any(region.name for region in spaces.get(body, ())) else (),
         joint=replace(joint_of(model, data, body, 0, source), handle=main.handle) if jointed else None,
         inertia=main.inertia if free or jointed else None,
     )
