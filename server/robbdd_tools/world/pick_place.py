@@ -69,7 +69,7 @@ class PickPlace(ArmControl):
         self._emit("pick-end")
 
     def grasp(self, name: str, goals: Sequence[str] = ()) -> Step:
-        """Do the same at once, without events."""
+        """Grasp and lift an object as ``pick`` does, but at once and without events; raises ``BehaviourError``."""
         since = self.simulation.forces.row
         grip, best = yield from self._approach(name, goals)
         yield from self._take(best, name, since)
