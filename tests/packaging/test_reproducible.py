@@ -72,5 +72,5 @@ def test_vsix(checkouts: tuple[Path, Path]) -> None:
         packed.append((client / "robbdd-workbench.vsix").read_bytes())
     assert packed[0] == packed[1]
     with ZipFile(BytesIO(packed[0])) as archive:
-        wheels = [name for name in archive.namelist() if name.endswith(".whl")]
-    assert wheels == [f"extension/out/server/robbdd_tools-{__version__}-py3-none-any.whl"]
+        wheels = [name for name in archive.namelist() if ".whl" in name]
+    assert wheels == [f"extension/out/server/robbdd_tools-{__version__}-py3-none-any.whl.br"]
