@@ -38,7 +38,7 @@ KNOWN_BEFORE = {
 PHYSICAL = (
     r"event \S+ never occurred",
     r"the execution was stopped after",
-    r"there is no room left for '.*' among",
+    r"there is no room left for '.*' (at '.*' )?among",
     r"overlap by",
 )
 """Reasons that only a simulation can find."""

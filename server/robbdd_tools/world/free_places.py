@@ -111,6 +111,7 @@ def bearing(base: Pose, x: float, y: float) -> float:
 
 def draw_place(
     name: str,
+    place: str,
     size: Size,
     fields: Iterable[Field],
     taken: Sequence[Taken],
@@ -124,7 +125,7 @@ def draw_place(
     rejected = 0
     where = ""
     for field in fields:
-        where = f"among {len(taken)} other objects"
+        where = f"at '{place}' among {len(taken)} other objects"
         for _ in range(TRIES):
             dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
             x, y = field.at(dx, dy)

@@ -154,11 +154,17 @@ def arrange(
             dropped.append(ball)
         else:
             size = Size(footprint(model), model.rest_height)
-            pose, rejected = draw_place(name, size, _fields(scene, cast, poses, works_at, name), taken, walls, rng)
+            fields = _fields(scene, cast, poses, works_at, name)
+            pose, rejected = draw_place(name, _place_of(scene, cast, name), size, fields, taken, walls, rng)
         taken.append(Taken(name, pose.position[0], pose.position[1], footprint(model)))
         poses[name] = pose
         resampled += rejected
     return Arrangement(poses, resampled)
+
+
+def _place_of(scene: SceneSpec, cast: Cast, name: str) -> str:
+    """Return the workspace where the scene has an object, or the table on which it is without one."""
+    return scene.places.get(name, cast.tables[0])
 
 
 def _is_exact(cast: Cast, name: str) -> bool:

@@ -23,7 +23,7 @@ export const FAILURES = {
     given: `(\n${BALLS.map((ball) => `            with-${ball}: holds(<${ball}> is located at <goal>, before <evt-pick-start>)`).join(" and\n")}\n        )`,
     values: Object.fromEntries(BALLS.map((ball) => [ball, `{ <balls.${ball}> }`])),
     line: /with-ball0:/,
-    cause: /^there is no room left for 'ball\d' among \d other objects \(unknown\)/,
+    cause: /^there is no room left for 'ball\d' at '\w+' among \d other objects \(unknown\)/,
   },
   unreachable: { instance: "far_sim", line: /Behaviour/, cause: /^panda cannot reach a free place at left_ws: its tool stays \d+ mm short \(violated/ },
   "lost-grip": {
