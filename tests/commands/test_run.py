@@ -13,6 +13,7 @@ import pytest
 
 from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
+from robbdd_tools.commands import FAILED
 
 pytestmark = pytest.mark.physics
 
@@ -73,6 +74,14 @@ def test_a_run_is_kept_and_its_failures_are_run_again(folder: Path) -> None:
         "   1  pickplace.bdd  2 hold, 2 violated, 0 unknown  (seed 5)",
         "   2  pickplace.bdd  0 hold, 2 violated, 0 unknown  (seed 5)",
     ]
+
+
+def test_folders_with_runs_are_named_if_there_are_several(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name / ".robbdd" / "runs").mkdir(parents=True)
+    done = robbdd(tmp_path, "runs")
+    assert done.returncode == FAILED
+    assert done.stderr.endswith("but in several folders: one, two; name one of them\n")
 
 
 def test_a_scenario_has_its_seed_whatever_else_is_selected(folder: Path) -> None:

@@ -66,6 +66,20 @@ def test_a_row_per_clause_holds_the_values(model: robbdd.Model) -> None:
     assert robbdd.runs(model.path) == ()
 
 
+def test_the_runs_of_a_folder_without_a_project_are_found_from_the_folder_above(tmp_path: Path) -> None:
+    for number, name in enumerate(("one", "two"), 1):
+        folder = shutil.copytree(EXAMPLES / "pickplace", tmp_path / name)
+        with robbdd.load(folder / "pickplace.bdd").scenarios(first=1).run(seed=number) as run:
+            run.wait()
+        if number == 1:
+            assert robbdd.find_run("1", tmp_path).folder == run.folder
+            assert robbdd.runs(tmp_path / "one")[0].folder == run.folder
+    with pytest.raises(robbdd.NoSuchRun, match="but in several folders: one, two; name one of them"):
+        robbdd.runs(tmp_path)
+    (tmp_path / ".robbdd" / "runs").mkdir(parents=True)
+    assert robbdd.runs(tmp_path) == ()
+
+
 def test_leaving_a_run_early_keeps_what_is_finished(model: robbdd.Model) -> None:
     with model.scenarios().run(jobs=1) as run:
         first = next(iter(run))

@@ -13,7 +13,7 @@ from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.workbench.bag_export import export_bags
-from robbdd_tools.workbench.stored import find_run, store_at
+from robbdd_tools.workbench.stored import find_run, kept_store
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def export_messages(options: ExportOptions) -> int:
 
 
 def _export(options: ExportOptions) -> int:
-    place = store_at(Path(), options.store).find(options.run)
+    place = kept_store(Path(), options.store).find(options.run)
     for folder in export_bags(place, options.output, options.names, mcap=options.mcap):
         print_line(str(folder))
     return OK

@@ -14,7 +14,7 @@ from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.run.run_policy import Policy
 from robbdd_tools.workbench.replaying import Replay
-from robbdd_tools.workbench.stored import store_at
+from robbdd_tools.workbench.stored import kept_store
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ def replay(options: ReplayOptions) -> int:
 
 
 def _replay(options: ReplayOptions) -> int:
-    place = store_at(Path(), options.store).find(options.run)
+    place = kept_store(Path(), options.store).find(options.run)
     record, status = place.record(), place.status()
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         replay = Replay(place, Path(folder), options.policy, options.names, force=options.force)

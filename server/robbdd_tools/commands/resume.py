@@ -11,7 +11,7 @@ from robbdd_tools.commands.output import print_note
 from robbdd_tools.commands.run import Outputs, conclude, report_problems, viewed_policy
 from robbdd_tools.workbench.resuming import resume as resumed
 from robbdd_tools.workbench.resuming import stored_policy, unfinished_run
-from robbdd_tools.workbench.stored import store_at
+from robbdd_tools.workbench.stored import kept_store
 
 if TYPE_CHECKING:
     from robbdd_tools.run.run_policy import Policy
@@ -41,7 +41,7 @@ def resume(options: ResumeOptions) -> int:
 
 
 def _resume(options: ResumeOptions) -> int:
-    store = store_at(options.path or Path(), options.outputs.keeping.store)
+    store = kept_store(options.path or Path(), options.outputs.keeping.store)
     place = unfinished_run(store, options.run, options.path)
     path, status = place.record().path, place.status()
     with resumed(place, lambda stored: _policy(options, stored)) as run:

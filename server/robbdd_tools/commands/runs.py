@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.commands import OK
-from robbdd_tools.commands.output import print_line, print_note
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.missing_files import missing_parts
 from robbdd_tools.run.store import NoSuchRun, StoredRun
-from robbdd_tools.workbench.stored import store_at
+from robbdd_tools.workbench.stored import kept_store
 
 if TYPE_CHECKING:
     from robbdd_tools.run.stored_results import RunStatus
@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 def list_runs(path: Path, store: Path | None) -> int:
     """Print the stored runs, newest last; return the exit code."""
-    found = store_at(path, store)
+    try:
+        found = kept_store(path, store)
+    except NoSuchRun as error:
+        return fail(str(error))
     runs = found.runs()
     for run in runs:
         for line in _lines(run):

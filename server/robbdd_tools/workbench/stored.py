@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.protocol.run_folder import trace_file
-from robbdd_tools.run.store import LATEST, RunStore, StoredRun, store_beside
+from robbdd_tools.run.store import FOLDER, LATEST, NoSuchRun, RunStore, StoredRun, store_beside
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results, rows_of
 
 if TYPE_CHECKING:
@@ -73,17 +73,40 @@ class PastRun(Recorded):
 
 
 def runs(path: str | os.PathLike[str] = ".", *, store: str | os.PathLike[str] | None = None) -> tuple[PastRun, ...]:
-    """Return the stored runs of the project that contains a path, oldest first. ``store`` is another folder of runs."""
-    return tuple(map(PastRun, store_at(Path(path), store).runs()))
+    """Return the stored runs of the project that contains a path, oldest first. ``store`` is another folder of runs.
+
+    If the project has none, they are those of the only folder in ``path`` that has runs; raises ``NoSuchRun`` if
+    several have.
+    """
+    return tuple(map(PastRun, kept_store(Path(path), store).runs()))
 
 
 def find_run(
     word: str = LATEST, path: str | os.PathLike[str] = ".", *, store: str | os.PathLike[str] | None = None
 ) -> PastRun:
-    """Return the stored run that ``word`` names by its number, by ``latest`` or by its folder. Raises ``NoSuchRun``."""
-    return PastRun(store_at(Path(path), store).find(word))
+    """Return the stored run that ``word`` names by its number, by ``latest`` or by its folder.
+
+    It is searched for where ``runs`` finds some. Raises ``NoSuchRun``.
+    """
+    return PastRun(kept_store(Path(path), store).find(word))
 
 
 def store_at(path: Path, store: str | os.PathLike[str] | None) -> RunStore:
     """Return the store in the folder ``store`` or, without one, the store of the project that contains a path."""
     return store_beside(path) if store is None else RunStore(Path(store))
+
+
+def kept_store(path: Path, store: str | os.PathLike[str] | None = None) -> RunStore:
+    """Return the store whose runs are read from a path: as ``store_at`` or, if there is none, that of a folder in it.
+
+    A model without a project keeps its runs in its own folder, while commands are often given in the folder above.
+    Raises ``NoSuchRun`` if several folders have a store.
+    """
+    own = store_at(path, store)
+    if store is not None or own.folder.is_dir():
+        return own
+    inner = sorted(folder for folder in path.glob(f"*/{FOLDER}") if folder.is_dir())
+    if len(inner) > 1:
+        places = ", ".join(folder.relative_to(path).parts[0] for folder in inner)
+        raise NoSuchRun(f"there are no runs in {own.folder}, but in several folders: {places}; name one of them")
+    return RunStore(inner[0]) if inner else own
