@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -144,6 +145,15 @@ def test_an_implementation_that_does_not_execute_the_behaviour_is_reported_where
     assert found.message == "'pick' of the catalog does not execute 'pick-place', so that all clauses stay unknown"
     apply(case, found.fixes[0])
     assert case.project.texts()[case.uri][1] == BDDX
+
+
+def test_a_policy_for_a_duration_is_reported_where_it_names_the_clause() -> None:
+    in_time = re.sub(
+        r"in-tray: holds\(.*\)", "in-tray: holds(it takes less than 5 s, from <place-start> until <place-end>)", MODEL
+    )
+    assert in_time != MODEL
+    case = fixture(f"//- run.bddx\n{BDDX}//- main.bdd\n{in_time}//- lab.scenex\n{SCENEX}")
+    assert ("fetch.in-tray", "execution-fit") in told(case)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.policies import noise_of
+from robbdd_tools.monitor.durations import NO_DURATION
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.verdict import Cause, Outcome
@@ -45,6 +46,12 @@ def test_a_policy_replaces_the_evaluator_of_its_clause_and_of_no_other() -> None
     assert judged(spec, moving([0.2])).outcome is Outcome.HOLDS
     other = as_judged(SENTENCE, replace(STATED, iri="https://x/other"), spec)
     assert decide(other, moving([0.2]), {}, {"t:a", "t:b"}).outcome is Outcome.UNKNOWN
+
+
+def test_a_policy_does_not_judge_how_long_something_takes() -> None:
+    found = judged(spec_of(), moving([0.2, 0.2]), 'it takes less than "5 s" from "t:a" until "t:b"')
+    assert found.outcome is Outcome.UNKNOWN
+    assert found.reason == NO_DURATION
 
 
 def test_a_part_of_a_group_has_its_policy() -> None:

@@ -53,6 +53,19 @@ def test_a_failure_of_the_users_code_is_reported_as_theirs(tmp_path: Path, modul
     assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason.format(tmp_path / f"{module}.py"))
 
 
+def test_code_that_computes_in_place_changes_no_other_verdict(tmp_path: Path) -> None:
+    (tmp_path / "in_place.py").write_text(
+        "def judge(evidence, arguments):\n"
+        "    times, places, stamps = evidence.times, evidence.position('env:bin'), evidence.stamps('env:bin')\n"
+        "    times -= 5.0\n    places -= 5.0\n    stamps -= 5.0\n    return times < 0.0\n"
+    )
+    spec = spec_of(Rule("python", "in_place:judge"), model=str(tmp_path / "m.bddx"))
+    trace = moving([0.2, 0.4])
+    assert [judged(spec, trace).robustness for _ in range(2)] == [1.0, 1.0]
+    assert trace.times.tolist() == [0.0, 0.1]
+    assert trace.positions.tolist() == moving([0.2, 0.4]).positions.tolist()
+
+
 def test_a_module_that_is_not_there_is_explained(tmp_path: Path) -> None:
     spec = spec_of(Rule("python", "no_such_module:judge"), model=str(tmp_path / "m.bddx"))
     found = judged(spec, moving([0.2]))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from monitor.traces import still, trace_of
+from robbdd_tools.base.articulation import OpeningRecord
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window
 from robbdd_tools.monitor.trace import Trace
@@ -98,6 +99,34 @@ def test_a_missing_record_of_a_pair_names_both() -> None:
         evidence().setting("arm", "colour")
     with pytest.raises(KeyError, match="arm ghost"):
         evidence().reach("arm", "ghost")
+
+
+def test_the_arrays_of_a_trace_are_read_only() -> None:
+    drawer = OpeningRecord("slide", 0.0, 0.1, np.zeros(2))
+    pair = {("a", "b"): np.zeros(2)}
+    own = np.zeros(2)
+    trace = replace(
+        trace_of({"a": [[0.0, 0.0, 0.0]] * 2}, {}),
+        grips={"r": np.zeros((2, 1))},
+        reaches=pair,
+        forces=pair,
+        impulses=pair,
+        touches=pair,
+        gaps=pair,
+        truths={"/t": own},
+        joint_clearances={"r": np.zeros(2)},
+        openings={"d": drawer, "e": "two joints"},
+    )
+    record = trace.openings["d"]
+    assert isinstance(record, OpeningRecord)
+    arrays = [trace.times, trace.positions, trace.orientations, record.positions]
+    for kept in ("grips", "reaches", "forces", "impulses", "touches", "gaps", "truths", "joint_clearances"):
+        arrays += getattr(trace, kept).values()
+    assert len(arrays) == 12
+    for array in arrays:
+        with pytest.raises(ValueError, match="read-only"):
+            array += 1.0
+    own += 1.0
 
 
 def test_a_sample_by_itself_has_the_poses_of_its_bodies() -> None:

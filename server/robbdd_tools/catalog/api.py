@@ -75,7 +75,7 @@ class Evidence(Protocol):
     """The data that an evaluator reads: the samples of one window, in order, and their scene.
 
     There are ``n`` samples. Positions are in m in the world frame, and orientations are unit quaternions (w, x, y, z).
-    An unknown name raises ``KeyError``, for which the monitor returns *unknown*.
+    Arrays are read-only. An unknown name raises ``KeyError``, for which the monitor returns *unknown*.
     """
 
     @property

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.executors import DEFAULT, EXECUTORS, executes
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import change, finding, listed, related_to
+from robbdd_tools.monitor.durations import NO_DURATION
 from robbdd_tools.names.elements import Site, story_sites
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -23,9 +25,11 @@ CODE = "execution-fit"
 
 
 def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report behaviours that the implementation does not execute, and distances not between exactly two elements."""
+    """Report behaviours that are not executed, and policies that cannot judge their clauses."""
     for placed in file.of(tree.Execution, tree.Policy):
         site = Site(snapshot, file, placed)
+        if isinstance(site.tree, tree.Policy):
+            yield from _duration(site, site.tree)
         match site.tree:
             case tree.Execution() as execution:
                 yield from _behaviour(site, execution)
@@ -77,6 +81,24 @@ def _template(snapshot: Snapshot, variant: Definition) -> Site | None:
             if isinstance(node, tree.Variant) and story.span(node.name) == variant.span:
                 return story.follow(node.template)
     return None
+
+
+def _duration(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
+    clause = site.target(policy.fluent)
+    owner = site.follow(policy.fluent)
+    if clause is None or owner is None or owner.tree is None:
+        return
+    for node in walk(owner.tree):
+        if not isinstance(node, tree.Fluent) or owner.span(node.name) != clause.span:
+            continue
+        if isinstance(node.predicate, tree.PhraseUse) and _is_duration(node.predicate.word):
+            related = (related_to(owner, node.name, "the clause"),)
+            yield finding(site, policy.fluent, Severity.WARNING, CODE, NO_DURATION, related)
+
+
+def _is_duration(word: str) -> bool:
+    predicate = load_catalog().predicates.get(word)
+    return predicate is not None and predicate.duration is not None
 
 
 def _distance(site: Site, rule: tree.Evaluation) -> Iterator[Diagnostic]:

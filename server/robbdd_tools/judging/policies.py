@@ -11,6 +11,7 @@ import numpy as np
 
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.judging.observation_streams import Stream
+from robbdd_tools.monitor.durations import NO_DURATION
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
 from robbdd_tools.monitor.unobserved import Unobserved
 from robbdd_tools.protocol.clauses import Fluent, Junction
@@ -45,6 +46,8 @@ def _attached(clause: Clause, policies: Mapping[str, Policy], spec: ScenarioSpec
     if policy is None or clause.time is None:
         return clause
     time = _with_horizon(clause.time, policy.horizon)
+    if isinstance(clause, Fluent) and clause.predicate.duration is not None:
+        return Fluent(_of_durations(policy), {}, time, clause.iri, condition=clause.condition)
     return Fluent(_predicate(policy, spec, clause.named), {}, time, clause.iri, condition=clause.condition)
 
 
@@ -59,6 +62,15 @@ def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any])
     unit = "m" if policy.rule.kind == "distance" else ""
     measured, error = MEASURED[policy.rule.kind], noise_of(policy)
     return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins, measured=measured, error=error)
+
+
+def _of_durations(policy: Policy) -> Predicate:
+    """Return a predicate of which nothing is known, for a clause on the time between two events."""
+
+    def refuse(_evidence: Evidence, _arguments: Arguments) -> FloatArray:
+        raise Unobserved(NO_DURATION)
+
+    return Predicate(policy.iri, "", "", (), "", "", "", refuse)
 
 
 def noise_of(policy: Policy) -> float:
@@ -127,7 +139,7 @@ class Judge:
 
 
 class Observed:
-    """The evidence of a window with observed positions instead of true ones."""
+    """The evidence of a window with observed positions instead of true ones. All arrays are copies."""
 
     def __init__(self, evidence: Evidence, streams: Mapping[str, Stream]) -> None:
         self._evidence = evidence
@@ -136,18 +148,18 @@ class Observed:
     @property
     def times(self) -> FloatArray:
         """The simulated time of each sample, s, shape (n,)."""
-        return self._evidence.times
+        return self._evidence.times.copy()
 
     def position(self, name: str) -> FloatArray:
         """Return the last observed position of an element at each sample, m, shape (n, 3).
 
         Raises ``KeyError`` for an element that is not observed.
         """
-        return self._streams[name].positions
+        return self._streams[name].positions.copy()
 
     def stamps(self, name: str) -> FloatArray:
         """Return the time at which each position of an element was observed, s, shape (n,). Raises ``KeyError``."""
-        return self._streams[name].stamps
+        return self._streams[name].stamps.copy()
 
 
 def _reported(topic: str, evidence: Evidence) -> FloatArray:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 NOT_AN_INTERVAL = "a duration needs 'from <start> until <end>', without 'at some time' and 'whenever'"
 
+NO_DURATION = "a policy cannot judge how long something takes: that follows from the times of the events"
+
 
 def judge_duration(
     margin: DurationMargin, arguments: Arguments, constraint: TimeConstraint, trace: Trace, unit: str

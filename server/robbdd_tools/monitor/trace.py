@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -66,7 +66,7 @@ class Sample:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A finite sequence of samples and events.
+    """A finite sequence of samples and events. Its arrays are read-only: users' code that judges receives them.
 
     - ``names``: the recorded bodies. The body of an object has its name, and the tool of an agent has the agent's name.
     - ``times``: (n,) s, increasing.
@@ -137,6 +137,15 @@ class Trace:
     defined: Mapping[str, str] = field(default_factory=dict[str, str])
     doubts: tuple[Doubt, ...] = ()
     stated: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make all arrays read-only, without copying them."""
+        for name in ("times", "positions", "orientations"):
+            object.__setattr__(self, name, _read_only(getattr(self, name)))
+        for name in ("grips", "reaches", "forces", "impulses", "truths", "touches", "gaps", "joint_clearances"):
+            object.__setattr__(self, name, {key: _read_only(value) for key, value in getattr(self, name).items()})
+        kept = {name: one if isinstance(one, str) else _fixed(one) for name, one in self.openings.items()}
+        object.__setattr__(self, "openings", kept)
 
     @property
     def end(self) -> float:
@@ -210,3 +219,14 @@ class Trace:
             {name: (p[0], p[1], p[2]) for name, p in zip(self.names, positions, strict=True)},
             {name: (q[0], q[1], q[2], q[3]) for name, q in zip(self.names, orientations, strict=True)},
         )
+
+
+def _read_only(values: FloatArray) -> FloatArray:
+    """Return the same values, which cannot be changed through the result."""
+    view = values.view()
+    view.flags.writeable = False
+    return view
+
+
+def _fixed(record: OpeningRecord) -> OpeningRecord:
+    return replace(record, positions=_read_only(record.positions))

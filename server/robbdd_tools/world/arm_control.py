@@ -65,6 +65,12 @@ class ArmControl:
         """The pose to which the servos move the tool."""
         return present_pose(self.arm, self.joints)
 
+    @property
+    def deviation(self) -> float:
+        """How far (m) the tool is from where the servos hold it."""
+        present = self.simulation.joint_positions(self.robot)
+        return float(np.linalg.norm(self.arm.forward(present)[0] - self.arm.forward(self.joints)[0]))
+
     def senses_object(self, name: str) -> bool:
         """Return whether the gripping faces hold an object."""
         return self.simulation.holds(self.robot.name, name)

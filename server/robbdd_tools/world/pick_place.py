@@ -34,6 +34,11 @@ of a millimetre and some milliradians.
 """
 PATIENCE = 30.0
 """Maximum wait for an object to come to rest, s."""
+STOPPED = 0.05
+"""A tool that is farther than this (m) from where its servos hold it was stopped by something.
+
+Compliant arms sag by up to 20 mm under their largest payload.
+"""
 RISE = 1e-3
 """If the travelling height is more than this (m) above the tool, it rises first: on a slant it could hit the place."""
 
@@ -103,16 +108,24 @@ class PickPlace(ArmControl):
         return PutPoses(self, self._grip)
 
     def _put(self, down: ToolPose, poses: PutPoses) -> Step:
-        over, here = poses.carried_to(down), self.tool
+        over, here, since = poses.carried_to(down), self.tool, self.simulation.forces.row
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
         yield from self.move_above(over, down)
         yield from self.move(down, self.robot.model.approach_speed)
+        self._check_arrival(since)
         self.held = None
         yield from self.gripper.release(self)
         yield from self.wait(round(self.robot.model.release_time / TICK))
         grip = poses.grip
         yield from self.move(over_support(self.simulation, self.robot, grip.name, down, grip.grasp.below))
+
+    def _check_arrival(self, since: int) -> None:
+        """Raise ``BehaviourError`` if something stopped the arm on its way; ``since`` is the way's first sample."""
+        off = self.deviation
+        if off > STOPPED:
+            error = f"{self.robot.name} did not arrive: its tool is {1000 * off:.0f} mm away"
+            raise BehaviourError(f"{error}{self._touched(since, self.held)}")
 
     def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
         """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""
@@ -178,10 +191,12 @@ class PickPlace(ArmControl):
         except BehaviourError as error:
             if best.touched:
                 raise BehaviourError(f"{error}: at the grasp, the arm touches {best.touched}") from error
-            touched = [one for one in self.simulation.forces.touched_since(since, self.robot.name) if one != name]
-            if not touched:
-                raise
-            raise BehaviourError(f"{error}: on its way, the arm touched {', '.join(touched)}") from error
+            raise BehaviourError(f"{error}{self._touched(since, name)}") from error
+
+    def _touched(self, since: int, part: str | None) -> str:
+        """Return in words what the arm touched since a sample, beside the part that it grips."""
+        touched = [one for one in self.simulation.forces.touched_since(since, self.robot.name) if one != part]
+        return f": on its way, the arm touched {', '.join(touched)}" if touched else ""
 
 
 def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:
