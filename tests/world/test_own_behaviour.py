@@ -13,6 +13,7 @@ from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, Origin
 from robbdd_tools.monitor.without_physics import KINEMATIC
 from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from world.worlds import BIN_WS, CUBE, PANDA, pick_place, scenario
 
@@ -139,6 +140,10 @@ def test_joints_never_move_faster_than_their_limits_whatever_is_commanded(tmp_pa
         ("data.xfrc_applied[-1] = 1.0", "xfrc_applied"),
         ("model.geom_friction[:] = 2.0", "geom_friction"),
         ("model.opt.gravity[:] = 0.0", "gravity"),
+        ("model.opt.disableflags |= 64", "disableflags"),
+        ("model.opt.timestep = 1e-4", "timestep"),
+        ("model.dof_armature[:] = 9.0", "dof_armature"),
+        ("data.time = 9.0", "time"),
     ],
 )
 def test_a_behaviour_that_changes_the_simulation_itself_leaves_its_clauses_unknown(
@@ -152,6 +157,19 @@ def test_a_behaviour_that_changes_the_simulation_itself_leaves_its_clauses_unkno
         rf"own_behaviour_\d+:Nod has changed the simulation itself \({what}\): it may only move its arm, by 'command'"
     )
     assert re.search(words, execution.broken), execution.broken
+
+
+@pytest.mark.physics
+def test_a_behaviour_that_lets_the_engine_call_its_code_leaves_its_clauses_unknown(tmp_path: Path) -> None:
+    code = "import mujoco\n" + NOD.replace(
+        "self.left -= 1", "self.left -= 1; mujoco.set_mjcb_passive(lambda model, data: None)"
+    )
+    execution = run(tmp_path, code)
+    try:
+        assert not execution.run_behaviour(0)
+    finally:
+        mujoco.set_mjcb_passive(None)
+    assert "has changed the simulation itself (mjcb_passive)" in execution.broken
 
 
 @pytest.mark.physics

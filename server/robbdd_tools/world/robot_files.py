@@ -7,20 +7,17 @@ from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from robbdd_tools.catalog.api import RobotModel
 from robbdd_tools.catalog.executable import ArmModel, ModelEntry
 from robbdd_tools.world.arm_chain import chain_to_palm
 from robbdd_tools.world.coupled_joints import (
-    coupled_by_name,
     followers_among,
     refuse_uncoupled,
     slowest,
     stiffen,
     tighten,
 )
-from robbdd_tools.world.engine import TIMESTEP, mujoco
+from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.file_contents import (
     fix_joints,
@@ -35,6 +32,7 @@ from robbdd_tools.world.gripper_actuators import GripperParts
 from robbdd_tools.world.gripper_files import GripperReader
 from robbdd_tools.world.gripper_names import named_in_spec
 from robbdd_tools.world.home_posture import find_home
+from robbdd_tools.world.joint_drives import add_servos, refuse_weak_drives
 from robbdd_tools.world.mesh_pieces import use_pieces
 from robbdd_tools.world.model_files import compiled, load, path_of, velocity_limits
 from robbdd_tools.world.model_meshes import read_whole
@@ -51,14 +49,6 @@ if TYPE_CHECKING:
 
 SPEED = 1.0
 """Speed limit (rad/s, m/s) of an arm's joints if neither the file nor the model has one."""
-STIFFNESS = 2000.0
-"""Smallest stiffness (N m/rad) of added servos."""
-SLIDING = 10.0
-"""For a sliding joint, the smallest stiffness (N/m) is this many times as large."""
-FREQUENCY, RATIO = 20.0, 0.7
-"""Natural frequency (rad/s) and damping ratio of servos that are added to joints with a large inertia."""
-STEADY = 5.0
-"""A joint with an added servo has an inertia of at least this many times its damping times the time step."""
 BASE_JOINTS = 3
 """Number of joints of a base that drives."""
 FLOOR = -0.65
@@ -125,7 +115,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     if followers and not arm.velocity:
         others = dict(zip(followers, velocity_limits(source, spec, followers, inf), strict=True))
         velocity = slowest(compiled(spec, source), joints, velocity, others)
-    _servos(spec, joints, followers)
+    add_servos(spec, joints, followers)
     changes += _without_idle_forces(spec, {gripper.actuator}, chain)
     for body in spec.bodies:
         # Arms compensate their own weight, as real controllers do.
@@ -149,6 +139,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
             counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
             raise SceneError(counted, origin=source.origin, entry=ModelEntry(what))
     _refuse_outside(model, source, joints, home)
+    refuse_weak_drives(model, source, joints, home, dict(gripper.open_joints))
     if tool == TOOL and not gripper.one_sided:
         face_ahead(spec, model, joints, home)
     key = f"{source.iri}#{name}" + ("" if tilt is None else f"#{tilt}")
@@ -219,39 +210,6 @@ def _joints(source: ModelSource, chain: list[Any]) -> tuple[str, ...]:
     return joints
 
 
-def _servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> None:
-    """Replace the motor or velocity servo of each joint without a position servo by a position servo.
-
-    A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too. Followers
-    are not driven.
-    """
-    driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
-    for joint in followers:
-        if joint in driven:
-            spec.delete(driven[joint])
-    inertias = _inertias(spec, joints)
-    for joint in joints:
-        actuator = driven.get(joint)
-        if actuator is not None and _is_position_servo(actuator):
-            continue
-        limit = 0.0
-        if actuator is not None:
-            limit = _largest_force(actuator)
-            spec.delete(actuator)
-        sliding = SLIDING if spec.joint(joint).type == mujoco.mjtJoint.mjJNT_SLIDE else 1.0
-        # The engine solves ties and contacts without the damping of servos: a light joint would give way or shake. Real
-        # drives have rotors.
-        least = STIFFNESS * sliding * (STEADY * 2 * RATIO * TIMESTEP) ** 2
-        rotor = max(0.0, least - inertias[joint])
-        spec.joint(joint).armature += rotor
-        inertia = inertias[joint] + rotor
-        stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertia)
-        servo = spec.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-        servo.set_to_position(kp=stiffness, kv=2 * RATIO * (stiffness * inertia) ** 0.5)
-        if limit > 0:
-            servo.forcerange, servo.forcelimited = [-limit, limit], True
-
-
 def _without_idle_forces(spec: Any, used: Collection[str], chain: list[Any]) -> list[str]:
     """Remove the other actuators that act although nothing commands them, and return what was changed.
 
@@ -273,36 +231,6 @@ def _acts_idle(actuator: Any) -> bool:
     control = min(max(0.0, low), high) if low < high else 0.0
     bias = 0.0 if actuator.biastype == mujoco.mjtBias.mjBIAS_NONE else float(actuator.biasprm[0])
     return float(actuator.biasprm[1]) == 0.0 and float(actuator.gainprm[0]) * control + bias != 0.0
-
-
-def _is_position_servo(actuator: Any) -> bool:
-    return (
-        actuator.biastype == mujoco.mjtBias.mjBIAS_AFFINE
-        and actuator.gainprm[0] > 0
-        and abs(actuator.gainprm[0] + actuator.biasprm[1]) <= 1e-6 * actuator.gainprm[0]
-        and actuator.gear[0] == 1.0
-    )
-
-
-def _largest_force(actuator: Any) -> float:
-    """Return the largest force (N, N m) of an actuator on its joint; 0 if it has no limit."""
-    if actuator.forcerange[1] > actuator.forcerange[0]:
-        return float(actuator.forcerange[1] * abs(actuator.gear[0]))
-    is_motor = actuator.biastype == mujoco.mjtBias.mjBIAS_NONE
-    if is_motor and actuator.ctrlrange[1] > actuator.ctrlrange[0]:
-        return float(actuator.ctrlrange[1] * abs(actuator.gear[0]) * actuator.gainprm[0])
-    return 0.0
-
-
-def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
-    """Return the inertia (kg m², kg) that each joint moves in the arm's posture in the file."""
-    model = spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    full = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, full)
-    coupled = coupled_by_name(model, joints)
-    return {joint: coupled.inertia(full, int(model.joint(joint).dofadr[0])) for joint in joints}
 
 
 def _refuse_outside(model: Any, source: ModelSource, joints: tuple[str, ...], home: tuple[float, ...]) -> None:
