@@ -128,6 +128,20 @@ def test_on_top_needs_contact_and_the_centre_above(
     assert found.robustness == pytest.approx(margin, abs=1e-9)
 
 
+@pytest.mark.parametrize(("lowest", "margin"), [(0.05, 0.05), (0.0015, 0.05), (0.0005, -0.0006), (-0.02, -0.0211)])
+def test_what_reaches_down_as_far_as_another_object_stands_beside_it(lowest: float, margin: float) -> None:
+    """A post, 0.2 m high, that touches the inner side of a frame, 50 mm high, does not stand on the frame."""
+    frame = tuple(((x, y, z), 0.0) for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (0.0, 0.05))
+    post = (((0.0, 0.0, 0.1), 0.0), ((0.0, 0.0, lowest - 0.1), 0.0))
+    trace = replace(
+        world(ball=still(2, (0.0, 0.0, 0.1))),
+        outlines={"ball": post, "tray": frame},
+        touches={("ball", "tray"): np.ones(2)},
+        touch_watched=("ball", "tray"),
+    )
+    assert judged("is-on-top-of", trace, one="ball", other="tray").robustness == pytest.approx(margin, abs=1e-9)
+
+
 def test_on_top_is_unknown_without_forces_or_outlines() -> None:
     trace = replace(world(ball=still(2, (0.0, 0.0, 0.15))), outlines={**SMALL_BALL, "tray": SMALL_BALL["ball"]})
     assert judged("is-on-top-of", trace, one="ball", other="tray").outcome is Outcome.UNKNOWN

@@ -15,12 +15,15 @@ DIRECTIONS = 180
 """Number of horizontal directions in which a footprint is measured; it is at most 0.02 % too large."""
 APART = 1e-4
 """The gap of objects that do not touch counts as at least this distance (m)."""
+BESIDE = 1e-3
+"""If the lowest point of an object is not this far (m) above that of the other one, the other one does not bear it."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return how far (m) the centre of ``one`` is above the top and within the footprint of ``other``, shape (n,).
 
     The smaller of the two values counts. Where the objects do not touch, the margin is at most their negative gap.
+    Where ``one`` reaches down as far as ``other``, it stands beside or inside it, and the margin is negative.
     """
     import numpy as np
 
@@ -33,8 +36,11 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     footprint = np.min(reach - center[:, :2] @ directions, axis=1)
     top = np.max(points[:, :, 2] + radii[:, None], axis=0)
     own, own_radii = outline_in_world(evidence, one)
-    gap = np.abs(np.min(own[:, :, 2] - own_radii[:, None], axis=0) - top)
+    bottom = np.min(own[:, :, 2] - own_radii[:, None], axis=0)
+    above = bottom - np.min(points[:, :, 2] - radii[:, None], axis=0)
+    gap = np.abs(bottom - top)
     placed = np.minimum(footprint, center[:, 2] - top)
+    placed = np.where((above > BESIDE) | (placed < 0.0), placed, above - BESIDE - APART)
     touching = contact_force(evidence, arguments) >= FAINTEST
     apart: FloatArray = np.minimum(placed, -np.maximum(gap, APART))
     return np.where(touching, placed, apart)
@@ -48,7 +54,8 @@ IS_ON_TOP_OF = Predicate(
     slots=(Slot("one", Kind.OBJECT, "rbw:ref-one"), Slot("other", Kind.OBJECT, "rbw:ref-other")),
     sentence='"{one}" is on top of "{other}"',
     unit="m",
-    doc="The object touches the other one, and its centre is above the other one's top and within its footprint.",
+    doc="The object touches the other one and does not stand beside it, and its centre is above the other one's top "
+    "and within its footprint.",
     evaluate=margin,
     quantities=(TOUCH,),
 )
