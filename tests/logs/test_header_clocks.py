@@ -108,13 +108,49 @@ def test_an_event_is_at_the_same_simulated_time_at_each_speed(speed: float, tmp_
     assert changes == (speed != 1.0)
 
 
-def test_events_after_a_jump_forward_keep_their_place_between_the_poses(tmp_path: Path) -> None:
-    jumped = [
-        transform("cup", (0, 0, 0), stamp=tick / 50 + (3 if tick > 250 else 0), received=tick / 50)
-        for tick in range(1, 501)
+@pytest.mark.parametrize(("rate", "jump"), [(50, 3.0), (50, 0.4), (50, -0.4), (5, 0.4), (5, -0.4), (5, 8.0)])
+def test_a_source_whose_clock_is_set_while_its_messages_come_as_before_is_not_used(
+    rate: int, jump: float, tmp_path: Path
+) -> None:
+    """Between two events, 2 s pass on the recorder's clock, and more or less on the one that was set."""
+    set_once = [
+        transform("cup", (0, 0, 0), stamp=9 + tick / rate + (jump if tick > 5 * rate else 0), received=9 + tick / rate)
+        for tick in range(1, 10 * rate)
     ]
-    found = read(tmp_path, [*jumped, text("pick-start", 4.0), text("pick-end", 6.0)])
-    assert [round(one.time, 2) for one in found.texts] == [3.98, 8.98]
+    found = read(tmp_path, [*set_once, text("pick-start", 13.0), text("pick-end", 15.0)])
+    assert np.isnan(found.tracks["cup"].positions).all()
+    first, second = (one.time for one in found.texts)
+    assert second - first == pytest.approx(2.0)
+    way = f"the headers of 'cup' on '/tf' jump {'back' if jump < 0 else 'ahead'} by "
+    assert any(one.startswith(way) for one in found.remarks)
+
+
+@pytest.mark.parametrize("rate", [50, 5, 1])
+def test_late_messages_and_pauses_of_a_simulator_are_no_jumps(rate: int, tmp_path: Path) -> None:
+    """Some messages come in one burst after a stall, and nothing is published while a simulator pauses."""
+    ticks = range(20 * rate)
+    stalled = [
+        transform("cup", (0, 0, 0), stamp=9 + tick / rate, received=max(9 + tick / rate, 12 if 2 * rate < tick else 0))
+        for tick in ticks
+    ]
+    paused = [
+        transform("mug", (0, 0, 0), stamp=9 + tick / rate, received=9 + tick / rate + (3 if tick > 4 * rate else 0))
+        for tick in ticks
+    ]
+    for number, messages in enumerate((stalled, paused)):
+        assert not any("jump" in one for one in read(tmp_path / str(number), messages).remarks)
+
+
+def test_a_source_with_another_delay_is_remarked(tmp_path: Path) -> None:
+    tool = [transform("tool", (0, 0, 0), stamp=100 + tick / 50) for tick in range(501)]
+    sent = [pose("/camera/cup", (0, 0, 0), stamp=100 + tick / 10) for tick in range(101)]
+    seen = [Message(one.topic, one.received + 0.3, one.kind, one.make) for one in sent]
+    found = read(tmp_path / "late", [*tool, *seen])
+    assert np.isfinite(found.tracks["camera/cup"].positions).all()
+    words = "the headers of '/camera/cup' are 0.300 s behind those of '/tf', compared at reception: "
+    assert [one for one in found.remarks if one.startswith(words) and "--clock /camera/cup=-0.300" in one]
+    stated = read(tmp_path / "stated", [*tool, *seen], {"/camera/cup": 0.0})
+    assert not any("compared at reception" in one for one in stated.remarks)
 
 
 def test_a_source_that_jumps_back_is_not_used(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ class HeaderClocks:
 
     def header_time(self) -> HeaderTime:
         """Return the headers' clock that counts, and the sources that have a different one."""
-        jumps = {source: float(pairs.jump) for source, pairs in self._sources.items() if pairs.jump}
+        jumps = {source: float(jump) for source, pairs in self._sources.items() if (jump := pairs.jump or pairs.leap())}
         remarks = [_jump_words(*one) for one in _grouped(jumps)]
         known = {source: pairs.arrays() for source, pairs in self._sources.items() if source not in jumps}
         if not known:
@@ -101,12 +101,11 @@ class HeaderClocks:
             words = "the times of reception do not say when messages arrived, so those without a header are not used"
             return HeaderTime(unusable=frozenset(jumps), timeless=True, remarks=(*remarks, words))
         clock = HeaderTime(received=received, stamps=np.maximum.accumulate(stamps))
-        others = {
-            source: ahead
-            for source, pairs in known.items()
-            if source[0] not in self.stated and abs(ahead := _ahead(*pairs, clock)) > MIN_OFFSET
-        }
+        aheads = {source: _ahead(*one, clock) for source, one in known.items() if source[0] not in self.stated}
+        others = {source: ahead for source, ahead in aheads.items() if abs(ahead) > MIN_OFFSET}
         remarks += [_other_words(*one, reference[0]) for one in _grouped(others)]
+        late = {source: ahead for source, ahead in aheads.items() if LONG_DELAY < abs(ahead) <= MIN_OFFSET}
+        remarks += [_late_words(*one, reference[0]) for one in _grouped(late)]
         unusable = frozenset((*jumps, *others))
         if (drift := _drift(received, stamps)) > MIN_DRIFT:
             words = "the difference of the clocks of headers and of reception changes"
@@ -197,6 +196,29 @@ class _Pairs:
             self.stamps.append(int(stamps[row]))
             row += 1
 
+    def leap(self) -> int:
+        """Return by how much (ns) the headers jumped while messages came as before: back, negative ahead; else 0.
+
+        A delayed message is received later than usual, and so are those after a pause of a simulator.
+        """
+        received, stamps = self.arrays()
+        waited, passed, offsets = np.diff(received), np.diff(stamps), received - stamps
+        if len(passed) < 2 * FEW:
+            return 0
+        usual, apart = float(np.median(passed)), float(np.median(waited))
+        steady = waited < 2 * apart + MIN_STEP
+        ahead = steady & (passed - waited > MIN_DRIFT) & (passed > 2 * usual)
+        back = steady & (waited - passed > MIN_DRIFT) & (passed < usual / 2)
+        for row in np.flatnonzero(ahead | back).tolist():
+            before, after = offsets[max(0, row + 1 - ORDERED) : row + 1], offsets[row + 1 : row + 1 + FEW]
+            if len(after) < FEW or len(before) < FEW:
+                continue
+            if ahead[row] and before.min() - after.max() > MIN_DRIFT:
+                return -int(np.median(before) - np.median(after))
+            if back[row] and after.min() - before.max() > MIN_DRIFT:
+                return int(np.median(after) - np.median(before))
+        return 0
+
     def arrays(self) -> tuple[Nanoseconds, Nanoseconds]:
         pairs = [*zip(self.received, self.stamps, strict=True)]
         # Beyond the last pair, the clocks count as equally fast, so the last message belongs to them.
@@ -246,7 +268,8 @@ def _grouped(found: Mapping[Source, float]) -> list[tuple[str, str, float]]:
 
 
 def _jump_words(_: str, called: str, back: float) -> str:
-    words = f"the headers of {called} jump back by {back / 1e9:.3f} s, so they are not used"
+    way = "back" if back > 0 else "ahead"
+    words = f"the headers of {called} jump {way} by {abs(back) / 1e9:.3f} s, so they are not used"
     return f"{words}: cut the log where a simulator was reset or a clock was set, and judge the parts"
 
 
@@ -255,6 +278,12 @@ def _delay_words(offset: int, topic: str) -> str:
     words = f"messages were received {abs(offset) / 1e9:.3f} s {side} the times in their headers"
     words += ", and those without a header, such as events, count when they were received"
     return f"{words}: if this is no delay but a wrong clock, pass --clock {topic}={-offset / 1e9:.3f} (seconds)"
+
+
+def _late_words(topic: str, called: str, ahead: float, reference: str) -> str:
+    side = "ahead of" if ahead > 0 else "behind"
+    words = f"the headers of {called} are {abs(ahead) / 1e9:.3f} s {side} those of '{reference}', compared at reception"
+    return f"{words}: if this is no delay but a wrong clock, pass --clock {topic}={ahead / 1e9:.3f} (seconds)"
 
 
 def _other_words(topic: str, called: str, ahead: float, reference: str) -> str:
