@@ -60,7 +60,7 @@ def test_a_log_without_frames_is_reported_and_long_lists_are_cut() -> None:
 )
 def test_a_text_reports_an_event_by_its_name_or_its_emitters(text: str) -> None:
     texts = [TextStamp("/events", text, 2.0), TextStamp("/events", "pick-start", 1.0), TextStamp("/log", text, 3.0)]
-    assert occurrences_of("ex:grasped", "pick-end", texts) == [2.0, 3.0]
+    assert [one.time for one in occurrences_of("ex:grasped", "pick-end", texts)] == [2.0, 3.0]
 
 
 def test_a_longer_text_reports_nothing() -> None:
@@ -115,3 +115,11 @@ def test_a_place_that_is_planned_is_not_where_a_thing_is(planned: str) -> None:
 def test_a_thing_may_be_called_by_such_a_word() -> None:
     assert frame_of("env:target_bin", ["map", "cell/target_bin", "goal/target_bin"], {}) == "cell/target_bin"
     assert frame_of("env:goal", ["map", "goal"], {}) == "goal"
+
+
+def test_where_the_user_declares_an_event_other_texts_do_not_report_it() -> None:
+    texts = [TextStamp("/state", "PICK_END", 2.0), TextStamp("/done", "pick-end", 4.0, declared=True)]
+    assert [one.time for one in occurrences_of("ex:evt-pick-end", "pick-end", texts)] == [4.0]
+    assert [one.time for one in occurrences_of("ex:evt-pick-end", "pick-end", texts[:1])] == [2.0]
+    assert occurrences_of("ex:evt-pick-end", "pick-end", texts[:1], ["evt-pick-end"]) == []
+    assert [one.time for one in occurrences_of("ex:evt-pick-end", "pick-end", texts[:1], ["place-end"])] == [2.0]

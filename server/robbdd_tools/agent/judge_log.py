@@ -25,7 +25,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
-from robbdd_tools.catalog.coordination import END, emitter
+from robbdd_tools.catalog.coordination import END, EXTERNAL, emitter
 from robbdd_tools.judging.decisions import decide, occurred
 from robbdd_tools.judging.log_executions import check_one_execution
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
@@ -37,9 +37,10 @@ from robbdd_tools.logs.log_period import cut
 from robbdd_tools.logs.log_table import read_events
 from robbdd_tools.logs.open_log import read_log
 from robbdd_tools.monitor.curve import Curve
+from robbdd_tools.monitor.time import occurrences
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
-from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, fluents_of
 from robbdd_tools.protocol.event_signals import read_event_signal
 from robbdd_tools.protocol.log_request import LOG_REQUEST, LogRequest
 from robbdd_tools.protocol.manifest_file import read_manifest
@@ -65,7 +66,7 @@ from robbdd_tools.world.log_views import observed_views, verdict_views
 
 
 def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator[RunMessage]:
-    (spec,) = manifest.scenarios
+    spec = _with_reported_events(*manifest.scenarios)
     began = perf_counter()
     whole = _contents(request, spec) if request.quiet is None else None
     yield RunStarted(1, f"log {Path(request.path).name}")
@@ -108,6 +109,13 @@ def _messages(manifest: Manifest, request: LogRequest, folder: Path) -> Iterator
     finish_output()
     yield ScenarioFinished(0, round(found.evidence.trace.end, 6), perf_counter() - began, 0.0)
     yield RunFinished(True)
+
+
+def _with_reported_events(spec: ScenarioSpec) -> ScenarioSpec:
+    """Return a scenario with the events of its clauses that nothing in it emits: a log may report them."""
+    clauses = [one for one in map(statement_of, spec.clauses) if isinstance(one, Fluent | Junction)]
+    named = [event for one in clauses for fluent in fluents_of(one) for event, _ in occurrences(fluent.time)]
+    return replace(spec, events={**dict.fromkeys(named, EXTERNAL), **spec.events})
 
 
 def _contents(request: LogRequest, spec: ScenarioSpec) -> LogContents:

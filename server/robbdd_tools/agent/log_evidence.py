@@ -15,15 +15,17 @@ from robbdd_tools.agent.log_distances import far_apart
 from robbdd_tools.agent.log_frames import Frames
 from robbdd_tools.agent.log_grips import LogGrips, grip_signals
 from robbdd_tools.base.large_arrays import large_array
-from robbdd_tools.catalog.coordination import DEFINED
+from robbdd_tools.catalog.coordination import DEFINED, each_emitter, joined
+from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.catalog.settings import written
 from robbdd_tools.judging.defined_events import with_defined_events
 from robbdd_tools.judging.scenario_clauses import iterations_of_events, statement_of
-from robbdd_tools.logs.log_names import elements_of, occurrences_of
+from robbdd_tools.logs.log_names import elements_of, local_name, occurrences_of
 from robbdd_tools.logs.transforms import product, rotated
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.clauses import EventOccurrence
+from robbdd_tools.protocol.event_signals import read_event_signal
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.extent import outline_of
@@ -63,7 +65,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
     staging = None if spec.instance is None else Staging(spec.instance, spec.seed)
     cast = cast_scene(spec.scene, staging, of_log=True)
     remarks = list(contents.remarks)
-    events = _events(spec, contents, remarks)
+    events = _events(spec, contents, [read_event_signal(one).event for one in request.signals], remarks)
     elements = (*cast.objects, *cast.agents, *cast.points)
     arms = find_arms(cast, contents, request, remarks)
     frames = Frames(spec, cast, contents, request, remarks, arms)
@@ -128,28 +130,45 @@ def _shapes(cast: Cast, known: Collection[str]) -> Iterator[str]:
             yield f"{name} has no model: it is the point at its frame, and what depends on its shape is unknown"
 
 
-def _events(spec: ScenarioSpec, contents: LogContents, remarks: list[str]) -> tuple[EventStamp, ...]:
+def _events(
+    spec: ScenarioSpec, contents: LogContents, signals: Collection[str], remarks: list[str]
+) -> tuple[EventStamp, ...]:
     """Return the events of a scenario in a log. If the log does not report its start and end, they are the log's.
 
-    If the recording was interrupted, the end of the log is not the end of the scenario.
+    If the recording was interrupted, the end of the log is not the end of the scenario; nor is it if the scenario's end
+    is among the events of the declared ``signals``.
     """
     stamps: list[EventStamp] = []
     iterations = {**_awaited(spec), **iterations_of_events(spec)}
     for event, emitter in spec.events.items():
         if emitter == DEFINED:
             continue
-        times = occurrences_of(event, emitter, contents.texts)
+        found = occurrences_of(event, _with_own_name(emitter, spec), contents.texts, signals)
+        times = [one.time for one in found]
+        if len(topics := {one.topic: None for one in found if not one.declared}) > 1:
+            listed = " and ".join(f"'{topic}'" for topic in topics)
+            remarks.append(f"{event} is reported on {listed}: --event '{local_name(event)}=TOPIC is TEXT' chooses one")
         if emitter not in (START, END):
             numbers = chain(sorted(iterations.get(event, ())), count(1 + max(iterations.get(event, ()), default=0)))
             stamps += (EventStamp(event, time, number) for number, time in zip(numbers, times, strict=False))
             continue
         if not times and emitter == END and contents.unfinished:
             remarks.append(f"the log does not report {event}, and its recording did not end: when it was is not known")
+        elif not times and any(inner_event(one, [local_name(event)]) for one in signals):
+            remarks.append(f"the log does not report {event} by its signal: when it was is not known")
         elif not times:
             times = [0.0 if emitter == START else contents.end]
             remarks.append(f"the log does not report {event}: the {emitter.rpartition('-')[2]} of the log counts")
         stamps += (EventStamp(event, time) for time in times)
     return tuple(sorted(stamps, key=lambda stamp: stamp.time))
+
+
+def _with_own_name(emitters: str, spec: ScenarioSpec) -> str:
+    """Add to an event's emitters the names that they have by themselves, if no other behaviour has one of that name."""
+    every = {one for source in spec.events.values() for one in each_emitter(source) if " " in one}
+    own = each_emitter(emitters)
+    names = [one.rpartition(" ")[2] for one in own if one in every]
+    return joined([*own, *(name for name in names if sum(one.endswith(f" {name}") for one in every) == 1)])
 
 
 def _awaited(spec: ScenarioSpec) -> dict[str, set[int]]:

@@ -47,4 +47,4 @@ def check_one_execution(spec: ScenarioSpec, texts: Sequence[TextStamp]) -> None:
 
 def _times(spec: ScenarioSpec, emitter: str, texts: Sequence[TextStamp]) -> list[float]:
     names = [event for event, source in spec.events.items() if emitter in each_emitter(source)] or [emitter]
-    return sorted({time for name in names for time in occurrences_of(name, emitter, texts)})
+    return sorted({one.time for name in names for one in occurrences_of(name, emitter, texts)})

@@ -146,7 +146,7 @@ class GrowingMcap:
     def add(self, events: Iterable[tuple[int, str, str]]) -> None:
         """Add events: the time of reception (ns), a topic, and the event."""
         for received, topic, event in events:
-            self._contents.found.text(topic, received, event)
+            self._contents.found.text(topic, received, event, declared=True)
 
     def check(self) -> None:
         """Raise ``UnreadableLog`` if a topic that the user states has not occurred so far."""
@@ -193,7 +193,7 @@ class GrowingMcap:
         if kind in FOXGLOVE:
             take_foxglove(self._contents, topic, kind, received, message)
         for event in self._watch.events(topic, message) if topic in self._watch.topics else ():
-            self._contents.found.text(topic, received, event)
+            self._contents.found.text(topic, received, event, declared=True)
 
 
 def _files(folder: Path) -> list[Path]:

@@ -33,7 +33,7 @@ class LogCollector:
         """``stated`` has the topics whose clocks the user has stated."""
         self.clocks = HeaderClocks(stated)
         self._stamped, self._received = _Messages(), _Messages()
-        self._texts: list[tuple[int, str, str]] = []
+        self._texts: list[tuple[int, str, str, bool]] = []
         self._truths: dict[str, list[tuple[int, float]]] = {}
 
     def transform(
@@ -88,9 +88,9 @@ class LogCollector:
         """Add the size of a force, N; ``time`` as for ``transform``."""
         self._messages(topic, "", time).forces.add(topic, time[0] or time[1], [FORCE], [size])
 
-    def text(self, topic: str, received: int, text: str) -> None:
-        """Add a text without a header, which may report an event."""
-        self._texts.append((received, topic, text))
+    def text(self, topic: str, received: int, text: str, *, declared: bool = False) -> None:
+        """Add a text without a header, which may report an event, or the name of a ``declared`` event."""
+        self._texts.append((received, topic, text, declared))
 
     def truth(self, topic: str, received: int, value: float) -> None:
         """Add a truth value: 1, -1 or NaN."""
@@ -105,7 +105,7 @@ class LogCollector:
         self._received.retime(clock)
         every = self._stamped
         every.absorb(self._received)
-        texts = sorted(zip(_moved([time for time, _, _ in self._texts], clock), self._texts, strict=True))
+        texts = sorted(zip(_moved([time for time, *_ in self._texts], clock), self._texts, strict=True))
         truths = {topic: _truths(found, clock) for topic, found in self._truths.items()}
         stamps = [*every.bounds(), *(time for time, _ in texts)]
         stamps += [time for times, _ in truths.values() for time in (times[0], times[-1])]
@@ -113,7 +113,7 @@ class LogCollector:
         remarks: list[str] = []
         return LogContents(
             every.frames.tracks(begin, remarks),
-            tuple(TextStamp(topic, text, (time - begin) / 1e9) for time, (_, topic, text) in texts),
+            tuple(TextStamp(topic, text, (time - begin) / 1e9, known) for time, (_, topic, text, known) in texts),
             (end - begin) / 1e9,
             (*clock.remarks, *remarks, *every.joints.remarks),
             {topic: Truths((np.array(times) - begin) / 1e9, values) for topic, (times, values) in truths.items()},

@@ -44,11 +44,15 @@ class Track:
 
 @dataclass(frozen=True, slots=True)
 class TextStamp:
-    """A text on a topic, and the time (s since the begin of the log) at which it was published."""
+    """A text on a topic, and the time (s since the begin of the log) at which it was published.
+
+    ``declared`` is true if the text is the name of an event that the user declares: by a signal, or by hand.
+    """
 
     topic: str
     text: str
     time: float
+    declared: bool = False
 
 
 @dataclass(frozen=True, slots=True)

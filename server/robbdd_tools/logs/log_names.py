@@ -159,15 +159,24 @@ def base_frame_of(agent: str, frames: Iterable[str], usual: Sequence[str], state
     return chosen[0] if chosen else ""
 
 
-def occurrences_of(event: str, emitter: str, texts: Iterable[TextStamp]) -> list[float]:
-    """Return the times (s) at which a log reports an event (CURIE), in order.
+def occurrences_of(
+    event: str, emitter: str, texts: Iterable[TextStamp], signals: Iterable[str] = ()
+) -> list[TextStamp]:
+    """Return the texts with which a log reports an event (CURIE), in order.
 
     A text reports an event by its name or by a name of its ``emitter``, with the usual decorations (``evt-pick-end``).
-    The text may be a CURIE or an IRI, but a sentence such as ``waiting for: pick-end`` reports nothing.
+    The text may be a CURIE or an IRI, but a sentence such as ``waiting for: pick-end`` reports nothing. If the user has
+    declared when the event occurs, other texts do not count; ``signals`` are the events of declared signals.
     """
     names = [local_name(event), *each_emitter(emitter)]
-    words = [(one.time, one.text.strip()) for one in texts]
-    return [time for time, word in words if not _SENTENCE.match(word) and inner_event(word, names) is not None]
+    found = [
+        one
+        for one in texts
+        if not _SENTENCE.match(one.text.strip()) and inner_event(one.text.strip(), names) is not None
+    ]
+    declared = [one for one in found if one.declared]
+    is_declared = bool(declared) or any(inner_event(name, names) is not None for name in signals)
+    return declared if is_declared else found
 
 
 def plain_word(name: str) -> str:

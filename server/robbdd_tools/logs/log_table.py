@@ -156,7 +156,7 @@ def read_events(path: Path) -> tuple[TextStamp, ...]:
         raise UnreadableLog(f"{path} cannot be read as a table: {error}") from error
     if not rows:
         raise UnreadableLog(f"{path} has no event: name each in a column 'event'")
-    return tuple(TextStamp(path.name, name, time) for time, name in sorted(rows))
+    return tuple(TextStamp(path.name, name, time, declared=True) for time, name in sorted(rows))
 
 
 def _rows(path: Path, stated: Mapping[str, str]) -> Iterator[Row]:

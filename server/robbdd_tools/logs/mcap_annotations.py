@@ -55,7 +55,7 @@ def read_annotations(paths: Iterable[Path]) -> Annotations:
 
 def annotated(contents: LogContents, found: Annotations) -> LogContents:
     """Return the contents of a log with the events whose times count from its begin."""
-    texts = [*contents.texts, *(TextStamp(name, event, time) for time, name, event in found.since_begin)]
+    texts = [*contents.texts, *(TextStamp(name, event, time, declared=True) for time, name, event in found.since_begin)]
     ordered = tuple(sorted(texts, key=lambda stamp: stamp.time))
     end = max([contents.end, *(time for time, _, _ in found.since_begin)])
     return replace(contents, texts=ordered, end=end, remarks=(*contents.remarks, *found.remarks))

@@ -77,7 +77,7 @@ def read_ros_bag(
                 topic = ""
             batches.finish()
         for received, source, event in events:
-            contents.found.text(source, received, event)
+            contents.found.text(source, received, event, declared=True)
         contents.remarks += watch.remarks
         return contents.finish()
     except UnreadableLog as error:
@@ -101,7 +101,7 @@ def take_message(
     if kind in READERS:
         READERS[kind](contents, topic, received, message)
     for event in watch.events(topic, message) if topic in watch.topics else ():
-        contents.found.text(topic, received, event)
+        contents.found.text(topic, received, event, declared=True)
 
 
 def not_read(topics: Mapping[str, str], defined: Collection[str]) -> list[str]:
