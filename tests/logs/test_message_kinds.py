@@ -268,3 +268,16 @@ def test_a_clock_of_no_topic_or_without_headers_is_refused(tmp_path: Path) -> No
         read_log(path, clocks={"/mug": 1.0})
     with pytest.raises(UnreadableLog, match=r"'/events' \(std_msgs/msg/String\) has the time of its reception"):
         read_log(path, clocks={"/events": 1.0})
+
+
+@pytest.mark.parametrize(("apart", "known"), [(0.1, False), (0.0005, True)])
+def test_a_frame_that_two_programs_publish_is_nowhere(apart: float, known: bool, tmp_path: Path) -> None:
+    twice = [
+        transform("tool", (shift, 0, 0), stamp=1 + tick / 50, received=1 + tick / 50 + shift / 1000)
+        for tick in range(20)
+        for shift in (0.0, apart)
+    ]
+    found = read_log(write(tmp_path / "drive", twice))
+    assert bool(np.isfinite(found.tracks["tool"].positions).all()) is known
+    words = "frame 'tool' has two places at one time, 100 mm apart, 20 times: two programs publish it"
+    assert any(words in one for one in found.remarks) is not known

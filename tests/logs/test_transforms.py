@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robbdd_tools.logs.log_contents import Track
-from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of
+from robbdd_tools.logs.transforms import Unconnected, poses_at, product, root_of, steadier_poses_at
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -38,6 +38,20 @@ def at(frame: str, reference: str, tracks: dict[str, Track], *times: float, max_
 def test_a_pose_between_two_is_interpolated() -> None:
     tracks = {"cup": track("map", (0.0, (0, 0, 0)), (1.0, (2, 0, 4)))}
     assert at("cup", "map", tracks, 0.0, 0.25, 1.0) == [[0, 0, 0], [0.5, 0, 1], [2, 0, 4]]
+
+
+@pytest.mark.parametrize(("lies", "found"), [(True, [0.3, 0.0, 0.0]), (False, [0.9, 0.0, 0.0])])
+def test_between_two_poses_a_frame_is_where_it_moves_less(lies: bool, found: list[float]) -> None:
+    """A hand moves by 1 m within half a second and stops. A part lies still, or moves with the hand."""
+    hand = [(tick / 100, (min(tick / 50, 1.0), 0.0, 0.0)) for tick in range(101)]
+    part = [(0.0, (0.3, 0.0, 0.0)), (1.0, (-0.7 if lies else 0.3, 0.0, 0.0))]
+    tracks = {"hand": track("map", *hand), "part": track("camera", *part)}
+    tracks["camera"] = track("hand", (0.0, (0.0, 0.0, 0.0)), static=True)
+    place, turn = steadier_poses_at("part", "map", tracks, np.array([0.3]), 1.0)
+    assert place[0].tolist() == pytest.approx(found)
+    assert turn[0].tolist() == pytest.approx([1, 0, 0, 0])
+    known = steadier_poses_at("part", "map", tracks, np.array([1.1]), 1.0)[0]
+    assert np.isnan(known).all()
 
 
 def test_nothing_is_known_in_a_gap_and_beyond_the_ends() -> None:

@@ -35,8 +35,8 @@ from robbdd_tools.world.staging import Staging
 if TYPE_CHECKING:
     from robbdd_tools.agent.log_arms import LoggedArm
     from robbdd_tools.agent.log_frames import Poses
-    from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.logs.log_contents import LogContents, Truths
+    from robbdd_tools.catalog.api import FloatArray, ObjectModel
+    from robbdd_tools.logs.log_contents import LogContents
     from robbdd_tools.protocol.log_request import LogRequest
     from robbdd_tools.protocol.specs import ScenarioSpec
 
@@ -108,7 +108,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         correct_places=spec.scene.correct_places,
         log=Path(request.path).name,
         uncertain=elements_of(request.uncertainty, elements),
-        truths={topic: _sampled(found, times) for topic, found in contents.truths.items()},
+        truths={topic: found.at(times, request.max_gap) for topic, found in contents.truths.items()},
         joint_clearances={
             agent: shares for agent, arm in arms.items() if (shares := arm.clearance(joints[agent])) is not None
         },
@@ -122,12 +122,18 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
 
 def _shapes(cast: Cast, known: Collection[str]) -> Iterator[str]:
     """Yield sentences about the observed elements whose shape is guessed or unknown."""
-    guessed = [f"{name} as {cast.objects[name].name}" for name in cast.by_name if name in known]
+    guessed = [f"{name} as {_described(cast.objects[name])}" for name in cast.by_name if name in known]
     if guessed:
         yield f"models of the catalog, by name: {', '.join(guessed)}; state others in a .scenex"
     for name in cast.points:
         if name in known:
             yield f"{name} has no model: it is the point at its frame, and what depends on its shape is unknown"
+
+
+def _described(model: ObjectModel) -> str:
+    """Return the name of a model, and how far its middle is from its frame: distances are from the middle."""
+    away = 1000 * float(np.linalg.norm(model.frame))
+    return model.name if away < 1.0 else f"{model.name}, whose middle is {away:.0f} mm from its frame"
 
 
 def _events(
@@ -216,9 +222,3 @@ def _thinned(times: FloatArray, rate: float) -> FloatArray:
     """Return the first of the times (n,) s, which increase, in each of the ``rate`` parts of a second."""
     slots = np.floor(times * rate)
     return times[np.concatenate([[True], slots[1:] > slots[:-1]])] if len(times) else times
-
-
-def _sampled(truths: Truths, times: FloatArray) -> FloatArray:
-    """Return the last reported truth at each time; NaN before the first report."""
-    rows = np.searchsorted(truths.times, times, side="right") - 1
-    return np.where(rows < 0, np.nan, truths.values[np.maximum(rows, 0)])

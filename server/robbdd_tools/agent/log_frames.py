@@ -22,7 +22,15 @@ from robbdd_tools.logs.log_names import (
     stated_frames,
     tool_frame_of,
 )
-from robbdd_tools.logs.transforms import Unconnected, poses_at, product, reached, root_of, rotated
+from robbdd_tools.logs.transforms import (
+    Unconnected,
+    poses_at,
+    product,
+    reached,
+    root_of,
+    rotated,
+    steadier_poses_at,
+)
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.staging import Staging
 
@@ -158,7 +166,7 @@ class Frames:
 
     def _poses(self, frame: str, times: FloatArray) -> Poses | None:
         try:
-            return poses_at(frame, self._world, self._tracks, times, self._max_gap)
+            return steadier_poses_at(frame, self._world, self._tracks, times, self._max_gap)
         except Unconnected as problem:
             self._remarks.append(str(problem))
             return None

@@ -121,8 +121,7 @@ class LogGrips:
                 raise NoGripSignal(
                     f"the log has no topic of truth values '{signal.source}'{_listed(self._contents.truths)}"
                 )
-            rows = np.searchsorted(truths.times, times, side="right") - 1
-            values = np.where(rows < 0, np.nan, truths.values[np.maximum(rows, 0)])
+            values = truths.at(times, self._max_gap)
             return np.where(np.isnan(values), np.nan, np.where(values > 0, 1.0, 0.0))
         track = self._track(signal)
         values = positions_at(track, times, self._max_gap)

@@ -6,11 +6,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.logs.joint_tracks import JointTrack
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
+
+REGULAR, REGULAR_SHARE = 20, 0.9
+"""A topic reports regularly if it has this many messages after the first one, and this share of them is not late."""
+ROUNDING = 1e-6
+"""Times (s) in a log have a smaller error."""
 
 
 class UnreadableLog(RobbddError):
@@ -61,6 +68,21 @@ class Truths:
 
     times: FloatArray
     values: FloatArray
+
+    def at(self, times: FloatArray, max_gap: float) -> FloatArray:
+        """Return the last report at each of some times (n,) s, NaN before the first one.
+
+        If the topic reports regularly, a report says nothing about a time more than ``max_gap`` (s) after it. A topic
+        that reports changes only is quiet for as long as nothing changes.
+        """
+        rows = np.searchsorted(self.times, times, side="right") - 1
+        known = np.maximum(rows, 0)
+        overdue = self._is_regular(max_gap) & (times - self.times[known] > max_gap + ROUNDING)
+        return np.where((rows < 0) | overdue, np.nan, self.values[known])
+
+    def _is_regular(self, max_gap: float) -> bool:
+        waits = np.diff(self.times)
+        return len(waits) >= REGULAR and float(np.mean(waits <= max_gap)) >= REGULAR_SHARE
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +22,8 @@ MIN_LENGTH = 0.5
 """Four numbers whose length is at least this are a quaternion that merely needs normalising."""
 SAME = 1e-6
 """If positions (m) and quaternions differ by at most this, they are the same pose, published again."""
+APART, OFTEN = 1e-3, 3
+"""A frame has two places if its poses (m, quaternions) at one time differ by more than this, so many times."""
 SHORTEST = 1.0
 """A frame that returns to a parent within this time (s) has both parents at once: nothing is grasped for less."""
 
@@ -85,13 +87,16 @@ class TrackBuilder:
     def tracks(self, begin: int, remarks: list[str]) -> dict[str, Track]:
         """Return the tracks, with times in s since ``begin`` (ns).
 
-        If a frame has several poses at one time, the last one is kept. Poses that are not finite, or whose quaternion
+        If a frame has several poses at one time, the last one is kept, unless they often differ: then two programs
+        publish the frame, and its place is unknown. Poses that are not finite, or whose quaternion
         has no length, are left out. If a frame has no other poses, several parents at once, or different static poses,
         its place is unknown, and a sentence about it is added to ``remarks``.
         """
         found: dict[str, Track] = {}
         for frame, parents in self._frames.items():
-            problem = "" if frame in self._lost else _problem(frame, list(parents.values()))
+            problem = (
+                "" if frame in self._lost else _problem(frame, list(parents.values())) or _two_places(frame, parents)
+            )
             remarks += [problem] if problem else []
             tracks = [poses.track(begin) for poses in parents.values()]
             known = [track for track in tracks if len(track.times)]
@@ -142,6 +147,15 @@ def _unusable(frame: str, parents: Iterable[_Poses]) -> str:
 def _two_parents(frame: str, one: str, other: str) -> str:
     words = f"frame '{frame}' has two parents, '{one}' and '{other}': publish one of them only"
     return f"{words}; its place is not known"
+
+
+def _two_places(frame: str, parents: Mapping[str, _Poses]) -> str:
+    """Return that a frame has different poses at the same times; empty if it has not."""
+    apart = [one for poses in parents.values() for one in poses.apart()]
+    if len(apart) < OFTEN:
+        return ""
+    words = f"frame '{frame}' has two places at one time, {1000 * max(apart):.0f} mm apart, {len(apart)} times"
+    return f"{words}: two programs publish it; its place is not known"
 
 
 def _has_both(parents: list[_Poses]) -> bool:
@@ -205,6 +219,17 @@ class _Poses:
         known = [values for _, values in self.rows.blocks() if len(values)]
         low, high = (np.array([choose(values, axis=0) for values in known]) for choose in (np.min, np.max))
         return bool(len(known) and (high.max(axis=0) - low.min(axis=0)).max() > SAME)
+
+    def apart(self) -> Iterator[float]:
+        """Yield how far (m) two poses in a row with the same time are apart, if they differ."""
+        for times, values in self.rows.blocks() if not self.static else ():
+            again = np.flatnonzero(times[1:] == times[:-1])
+            one, other = values[again], values[again + 1]
+            away = np.linalg.norm(other[:, :3] - one[:, :3], axis=1)
+            # A quaternion and its negative are the same turn.
+            same, opposite = (np.abs(other[:, 3:] - sign * one[:, 3:]).max(axis=1, initial=0.0) for sign in (1, -1))
+            turned = np.minimum(same, opposite)
+            yield from away[(away > APART) | (turned > APART)].tolist()
 
     def track(self, begin: int) -> Track:
         stamps, values = self.rows.in_order(_is_pose, same=self.static)

@@ -8,9 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.logs.log_contents import Track
+
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.logs.log_contents import Track
+
+OFTEN = 0.02
+"""If a frame is recorded at intervals of at most this (s), it does not matter in which frame it is interpolated."""
 
 
 class Unconnected(Exception):
@@ -46,6 +50,36 @@ def poses_at(
     origin, base = _along(up[: up.index(common)], tracks, times, max_gap)
     back = base * (1.0, -1.0, -1.0, -1.0)
     return rotated(back, position - origin), product(back, turn)
+
+
+def steadier_poses_at(
+    frame: str, reference: str, tracks: Mapping[str, Track], times: FloatArray, max_gap: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return poses like ``poses_at``, interpolated in the parent or in ``reference``, wherever the frame moved less.
+
+    A camera on a wrist sees a part that lies still: between two detections, the part stays where it is in the world,
+    not where it is in the picture. A part in a gripper stays where it is in the hand. Frames that are recorded often
+    are interpolated in their parents.
+    """
+    found = poses_at(frame, reference, tracks, times, max_gap)
+    track = tracks.get(frame)
+    if track is None or track.static or track.later or len(track.times) < 2:
+        return found
+    if float(np.median(np.diff(track.times))) <= OFTEN or _is_fixed(track.parent, reference, tracks):
+        return found
+    places, turns = poses_at(frame, reference, tracks, track.times, max_gap)
+    seen = Track(reference, track.times, places, turns)
+    rows = np.clip(np.searchsorted(track.times, times, side="right") - 1, 0, len(track.times) - 2)
+    moved, moved_in_parent = (np.linalg.norm(np.diff(one.positions, axis=0), axis=1)[rows] for one in (seen, track))
+    steadier = moved < moved_in_parent
+    for own, other in zip(found, _interpolated(seen, times, max_gap), strict=True):
+        own[steadier] = other[steadier]
+    return found
+
+
+def _is_fixed(frame: str, reference: str, tracks: Mapping[str, Track]) -> bool:
+    """Return whether a frame never moves relative to ``reference``."""
+    return all(tracks[one].static for one in reached((frame, reference), tracks))
 
 
 def _in_each_parent(
