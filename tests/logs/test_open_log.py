@@ -249,6 +249,21 @@ def test_angles_with_units_are_the_orientation(tmp_path: Path) -> None:
     assert any("or roll, pitch and yaw with their unit: 'roll [deg]'" in one for one in found.remarks)
 
 
+def test_angles_are_the_orientation_of_a_frame_in_a_column_of_another_name(tmp_path: Path) -> None:
+    text = "time,body,x,y,z,roll [deg],pitch [deg],Yaw [deg]\n0,cup,1,2,3,90,0,90\n"
+    ((w, x, y, z),) = table(tmp_path, text, {"frame": "body"}).tracks["cup"].orientations
+    assert (w, x, y, z) == pytest.approx((0.5, 0.5, 0.5, 0.5))
+    for head, missing in (
+        ("roll [deg],pitch [deg],heading", "no column 'yaw'"),
+        ("roll,pitch,yaw", "no unit of an angle"),
+    ):
+        text = f"time,body,x,y,z,{head}\n0,cup,1,2,3,90,0,90\n"
+        stated = {"frame": "body", "roll": head.partition(",")[0]}
+        with pytest.raises(UnreadableLog, match=f"roll, pitch and yaw with their units; there is {missing}"):
+            table(tmp_path, text, stated)
+        assert np.isnan(table(tmp_path, text, {"frame": "body"}).tracks["cup"].orientations).all()
+
+
 def test_an_orientation_of_zeros_is_named(tmp_path: Path) -> None:
     found = table(tmp_path, "time,frame,x,y,z,qw,qx,qy,qz\n0,cup,1,2,3,0,0,0,0\n1,cup,1,2,3,0,0,0,0\n")
     assert np.isnan(found.tracks["cup"].positions).all()

@@ -60,6 +60,7 @@ def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> 
         if bare not in every:
             raise UnreadableLog(f"{place}: there is no column '{title}'; it has: {', '.join(every)}")
         known[name] = replace(every[bare], unit=every[bare].unit or column.unit)
+    known = _oriented(known, stated, place)
     if "time" not in known:
         words = "there is no column 'time': name the columns in the first line, or say --column time=COLUMN"
         raise UnreadableLog(f"{place}: {words}; it has: {', '.join(every)}")
@@ -72,20 +73,32 @@ def columns_of(place: str, titles: Sequence[str], stated: Mapping[str, str]) -> 
 
 
 def _known(every: Mapping[str, Column]) -> dict[str, Column]:
-    """Return the known columns by name. Titles may have capital letters if no other title has the same letters.
-
-    Roll, pitch and yaw are the orientation of a pose only together, with their units and without a quaternion; they may
-    be joints of an arm.
-    """
+    """Return the known columns by name. Titles may have capital letters if no other title has the same letters."""
     found: dict[str, Column] = {}
     for name in DIMENSIONS:
         alike = [title for title in every if title.casefold() == name]
         if name in every or len(alike) == 1:
             found[name] = every[name if name in every else alike[0]]
-    is_turned = "frame" in found and not any(name in found for name in TURN)
-    if not (is_turned and all(name in found and found[name].unit for name in ANGLES)):
-        found = {name: column for name, column in found.items() if name not in ANGLES}
     return found
+
+
+def _oriented(known: dict[str, Column], stated: Mapping[str, str], place: str) -> dict[str, Column]:
+    """Return the columns without roll, pitch and yaw if these are not the orientation of a pose.
+
+    They are one only together, with their units and without a quaternion; they may be joints of an arm. Raises
+    ``UnreadableLog`` if only some of them are stated.
+    """
+    is_turned = "frame" in known and not any(name in known for name in TURN)
+    if is_turned and all(name in known and known[name].unit for name in ANGLES):
+        return known
+    named = [name for name in ANGLES if name in stated]
+    if named and is_turned:
+        missing = next((name for name in ANGLES if name not in known), None)
+        words = (
+            f"no column '{missing}'" if missing else "no unit of an angle: write it in the title, as in 'roll [deg]'"
+        )
+        raise UnreadableLog(f"{place}: an orientation needs roll, pitch and yaw with their units; there is {words}")
+    return {name: column for name, column in known.items() if name not in ANGLES}
 
 
 def _is_unit(unit: str, dimension: str) -> bool:

@@ -256,7 +256,7 @@ def _several(log: Path, scenarios: list[ScenarioSpec]) -> str:
     listed += f"; and {len(scenarios) - MAX_LISTED} more" if len(scenarios) > MAX_LISTED else ""
     return (
         f"{log.name} is the log of one execution, but {len(scenarios)} scenarios fit: {listed}. "
-        "Select the scenario that the robot executed with --where 'variable=value, …' or --scenario NAME"
+        "Select the scenario that the robot executed with --where 'variable=value and …' or --scenario NAME"
     )
 
 
