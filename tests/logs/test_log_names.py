@@ -8,7 +8,14 @@ import pytest
 
 from judging.judged_policies import spec_of
 from robbdd_tools.logs.log_contents import TextStamp
-from robbdd_tools.logs.log_names import FramesProblem, frame_of, occurrences_of, stated_frames, tool_frame_of
+from robbdd_tools.logs.log_names import (
+    FramesProblem,
+    frame_of,
+    occurrences_of,
+    shared_frames,
+    stated_frames,
+    tool_frame_of,
+)
 from robbdd_tools.monitor.policy import Observation, Policy
 from world.worlds import CUBE
 
@@ -123,3 +130,12 @@ def test_where_the_user_declares_an_event_other_texts_do_not_report_it() -> None
     assert [one.time for one in occurrences_of("ex:evt-pick-end", "pick-end", texts[:1])] == [2.0]
     assert occurrences_of("ex:evt-pick-end", "pick-end", texts[:1], ["evt-pick-end"]) == []
     assert [one.time for one in occurrences_of("ex:evt-pick-end", "pick-end", texts[:1], ["place-end"])] == [2.0]
+
+
+def test_a_frame_belongs_to_one_element_or_to_those_for_which_it_is_stated() -> None:
+    one = {"ex:cube1": "cube1", "ex:cube-1": "cube1", "ex:bin": "bin"}
+    words = "the frame 'cube1' fits ex:cube-1, but also ex:cube1; name that of ex:cube-1 with --frame ex:cube-1=FRAME"
+    assert shared_frames(one, {}) == {"ex:cube-1": words}
+    assert set(shared_frames(one, {"cube-1": "cube1"})) == {"ex:cube1"}
+    assert shared_frames(one, {"ex:cube1": "cube1", "cube-1": "cube1"}) == {}
+    assert set(shared_frames({"a:cube": "cell/cube", "b:cube": "cell/cube"}, {})) == {"a:cube", "b:cube"}

@@ -29,6 +29,22 @@ def places(scene: SceneSpec, seed: int = 1) -> dict[str, Pose]:
     return arrange(scene, cast, base, np.random.default_rng(seed)).poses
 
 
+def test_a_workspace_that_nothing_carries_is_the_union_of_those_that_it_lists() -> None:
+    """Both boards of the shelf are workspaces; the area lists the lower one only, and the block all of these."""
+    shelf, lower, upper, area, block = "env:shelf", "env:lower_ws", "env:upper_ws", "env:area_ws", "env:block_ws"
+    scene = replace(
+        SCENE,
+        objects=(*SCENE.objects, shelf),
+        workspaces={**SCENE.workspaces, lower: (shelf,), upper: (shelf,), area: ()},
+        contains={**SCENE.contains, area: (lower,), block: (area, upper, lower)},
+    )
+    regions = cast_scene(scene).regions
+    assert len(regions[lower]) == len(regions[upper]) == 1
+    assert regions[area] == regions[lower]
+    assert set(regions[block]) == {*regions[lower], *regions[upper]}
+    assert len(regions[block]) == 2
+
+
 def test_the_seed_decides() -> None:
     assert places(SCENE, 5) == places(SCENE, 5)
     assert places(SCENE, 5)[CUBE] != places(SCENE, 6)[CUBE]

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 BLOCK = 65536
 """This many samples are computed at once."""
+FASTER = 1.1
+"""Times that follow each other up to this many times as fast as samples are judged are nearly all judged."""
 START, END = "scenario-start", "scenario-end"
 
 
@@ -75,6 +77,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         *(track.times for arm in arms.values() for track in arm.tracks),
         *grips.observed(signals),
     ]
+    remarks += _thinned_out(observed, request.rate)
     times = _times(observed, events, contents, request)
     joints = {agent: arm.positions(times, request.max_gap) for agent, arm in arms.items()}
 
@@ -216,6 +219,15 @@ def _times(
     # Without a sample in a gap, a clause would be judged across it.
     long = np.diff(times) > request.max_gap
     return np.unique(np.concatenate([times, (times[:-1] + times[1:])[long] / 2]))
+
+
+def _thinned_out(observed: Iterable[FloatArray], rate: float) -> list[str]:
+    """Return a remark if some times (s) of observations follow each other faster than ``rate`` (1/s)."""
+    recorded = max((1.0 / float(np.median(np.diff(one))) for one in observed if len(one) > 1), default=0.0)
+    if recorded <= FASTER * rate:
+        return []
+    words = f"poses were recorded up to {recorded:.0f} times a second, and at most {rate:g} of these are judged"
+    return [f"{words}: shorter peaks are not seen; --rate {recorded:.0f} judges all"]
 
 
 def _thinned(times: FloatArray, rate: float) -> FloatArray:

@@ -19,6 +19,7 @@ from robbdd_tools.logs.log_names import (
     elements_of,
     frame_of,
     local_name,
+    shared_frames,
     stated_frames,
     tool_frame_of,
 )
@@ -86,6 +87,9 @@ class Frames:
                     remarks.append(f"{element} is the frame '{frame}'")
             except FramesProblem as problem:
                 problems[element] = str(problem)
+        for element, problem in shared_frames(self.of, stated).items():
+            del self.of[element]
+            problems[element] = problem
         asked = {agent for agent in jointed if agent not in self.of}
         self._bases = self._base_frames(elements_of(request.bases, cast.agents), asked)
         # Whether a thing is at a place also depends on the workspaces of others, which may be inside this one.

@@ -115,6 +115,28 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
     raise FramesProblem(f"the log has no frame for {element}{_nearest(name, known)}; {hint}")
 
 
+def shared_frames(found: Mapping[str, str], stated: Mapping[str, str]) -> dict[str, str]:
+    """Return the elements that cannot be where their frame is, because it is that of another element, and why not.
+
+    ``found`` maps elements (CURIE) to frames. A frame belongs to the elements for which it is ``stated``, else to the
+    only one with exactly its name, else to none.
+    """
+    owners: dict[str, list[str]] = {}
+    for element, frame in found.items():
+        owners.setdefault(frame, []).append(element)
+    problems: dict[str, str] = {}
+    for frame, elements in owners.items():
+        known = [one for one in elements if not {one, local_name(one)}.isdisjoint(stated)]
+        exact = [one for one in elements if local_name(one) == frame.rpartition("/")[2]]
+        own = known or (exact if len(exact) == 1 else [])
+        for element in elements if len(elements) > 1 else ():
+            if element not in own:
+                others = ", ".join(one for one in elements if one != element)
+                words = f"the frame '{frame}' fits {element}, but also {others}"
+                problems[element] = f"{words}; name that of {element} with --frame {element}=FRAME"
+    return problems
+
+
 def _is_intended(frame: str, name: str) -> bool:
     """Return whether a frame is planned and not measured, judged by the words of its path except the element's name."""
     others = [part for part in frame.split("/") if plain_word(part) != plain_word(name)]

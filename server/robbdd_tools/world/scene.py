@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Region, RobotModel
@@ -98,6 +99,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None, *, of_log: bool
     regions = _regions(scene, objects, points.keys())
     frames = {**dict.fromkeys(points, (0.0, 0.0, 0.0)), **{name: model.frame for name, model in objects.items()}}
     regions |= _stated_regions(scene, frames, regions, () if staging is None else staging.boxes)
+    regions |= _unions(scene, regions)
     return Cast(
         objects,
         agents,
@@ -177,7 +179,7 @@ def _regions(
     scene: SceneSpec, objects: Mapping[str, ObjectModel], points: Set[str]
 ) -> dict[str, tuple[tuple[str, Region], ...]]:
     regions: dict[str, tuple[tuple[str, Region], ...]] = {}
-    for workspace in {**scene.workspaces, **scene.contains}:
+    for workspace in (one for one, own in scene.workspaces.items() if own):
         boxes: list[tuple[str, Region]] = []
         for carrier in carriers(scene, workspace):
             model = objects.get(carrier)
@@ -191,6 +193,18 @@ def _regions(
         elif boxes:
             regions[workspace] = tuple(boxes)
     return regions
+
+
+def _unions(
+    scene: SceneSpec, regions: Mapping[str, tuple[tuple[str, Region], ...]]
+) -> dict[str, tuple[tuple[str, Region], ...]]:
+    """Return the regions of the workspaces that nothing carries: those of the workspaces inside them."""
+    found: dict[str, tuple[tuple[str, Region], ...]] = {}
+    for workspace in scene.contains:
+        if workspace not in regions and not scene.workspaces.get(workspace):
+            inner = [regions[one] for one in contents_of(scene, workspace) if one in regions]
+            found |= {workspace: tuple(dict.fromkeys(chain.from_iterable(inner)))} if inner else {}
+    return found
 
 
 def _stated_regions(
