@@ -85,3 +85,11 @@ def test_one_of_several_behaviours_is_reported_by_its_own_event(models: Path, tm
     messages += [text("pick-start", 1.0), text("pick-end", 3.0), text("place-end", 8.0)]
     found, _ = judged(models, tmp_path, messages)
     assert set(verdicts(found).values()) == {"holds"}, found
+
+
+def test_observations_that_are_not_judged_are_remarked(models: Path, tmp_path: Path) -> None:
+    words = (
+        "poses were recorded up to 50 times a second, and at most 20 of these are judged: shorter peaks are not seen"
+    )
+    assert f"{words}; --rate 50 judges all" in judged(models, tmp_path, drive(), "--rate", "20")[1]
+    assert words not in judged(models, tmp_path, drive(), "--rate", "50")[1]

@@ -76,6 +76,16 @@ def test_a_run_is_kept_and_its_failures_are_run_again(folder: Path) -> None:
     ]
 
 
+def test_clauses_that_policies_judge_are_named(tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLES / "pickplace", tmp_path, dirs_exist_ok=True)
+    by_policy = robbdd(
+        tmp_path, "run", "pickplace.bddx", "--no-store", "--where", "thing=cube0 and goal=left_ws"
+    ).stdout
+    assert "\nat-goal is judged by the policy near-goal, not by its predicate\n" in by_policy
+    plain = robbdd(tmp_path, "run", "pickplace.bdd", "--no-store", "--where", "thing=cube0 and goal=left_ws").stdout
+    assert "policy" not in plain
+
+
 def test_folders_with_runs_are_named_if_there_are_several(tmp_path: Path) -> None:
     for name in ("one", "two"):
         (tmp_path / name / ".robbdd" / "runs").mkdir(parents=True)

@@ -36,6 +36,7 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
 )
 from robbdd_tools.protocol.run_folder import DEBUG_HOST
+from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.run.readable import readable
 from robbdd_tools.run.report import (
     SIGNS,
@@ -197,6 +198,8 @@ class Display:
         self._results = results
         for words in self._results.choices():
             self._console.print(plain(words, STYLES[Outcome.UNKNOWN]))
+        for clause, policy in self._results.policies().items():
+            self._console.print(Text(f"{plain_name(clause)} is judged by the policy {policy}, not by its predicate"))
         for name, reason in self._vacuous():
             self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]

@@ -19,7 +19,7 @@ from robbdd_tools.protocol.messages import (
     never_judged,
 )
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
-from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, plain_name
 from robbdd_tools.run.consequences import Causes
 from robbdd_tools.run.readable import clause_title
 from robbdd_tools.run.vacuous_clauses import Vacuity
@@ -118,6 +118,14 @@ class RunResults:
     def vacuous(self) -> Mapping[str, str]:
         """Map the IRI of each clause that could not have failed in this run to the reason why it could not."""
         return self._vacuity.reasons()
+
+    def policies(self) -> Mapping[str, str]:
+        """Map the IRI of each clause or part of a clause that a policy judges to the names of its policies."""
+        found: dict[str, dict[str, None]] = {}
+        for scenario in self.scenarios:
+            for policy in () if scenario.spec.execution is None else scenario.spec.execution.policies:
+                found.setdefault(policy.clause, {})[plain_name(policy.iri)] = None
+        return {clause: ", ".join(names) for clause, names in found.items()}
 
     def titles(self) -> Mapping[str, str]:
         """Map the IRI of each clause to its title. A title that is a sentence has the values of the first scenario."""
