@@ -152,9 +152,10 @@ def test_a_gripper_without_friction_loses_the_thing_and_says_so() -> None:
 
 
 def test_a_thing_that_is_torn_away_by_what_it_hits_is_lost_with_this_reason() -> None:
-    """Carried at the usual height, a bottle reaches below the rim of a bin."""
+    """Carried at the usual height, a bottle reaches below the rim of a bin, which is too heavy to be pushed away."""
     bottle = "env:bottle1"
-    scene = replace(SCENE, objects=(bottle, BIN, "env:bin2", "env:bench"), agents=("env:ur10",))
+    heavy = (ConfigSpec(BIN, "mass", "20"),)
+    scene = replace(SCENE, objects=(bottle, BIN, "env:bin2", "env:bench"), agents=("env:ur10",), config=heavy)
     lost = [to_the_end(execution([pick_place(bottle, agent="env:ur10")], scene, seed)).remark for seed in range(1, 6)]
     assert [remark for remark in lost if remark.endswith(f" after {bottle} hit {BIN}")]
 

@@ -132,3 +132,15 @@ def test_a_cup_lets_go_at_its_breakaway_force(pull: float, lost: bool) -> None:
     for _ in range(20):
         simulation.tick()
     assert simulation.holds(AGENT, CUBE) is not lost
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(("mass", "is_lifted"), [("1.0", True), ("2.5", True), ("3.5", True), ("4.2", False)])
+def test_the_cup_lifts_what_its_vacuum_bears(mass: str, is_lifted: bool) -> None:
+    """The vacuum pulls with 42 N; a box of 3.5 kg weighs 34.3 N, one of 4.2 kg 41.2 N, and lifting accelerates it."""
+    box = "env:box1"
+    config = (ConfigSpec(box, "mass", mass), ConfigSpec(AGENT, "ee_speed", "0.1"))
+    scene = replace(SCENE, objects=(box, "env:bench"), agents=(AGENT,), workspaces={}, contains={}, config=config)
+    for seed in range(1, 4):
+        run = execution([Call("pick", {"agent": AGENT, "object": box})], scene, seed)
+        assert run.run_behaviour(0) is is_lifted, run.trace.remark

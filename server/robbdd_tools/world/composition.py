@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.base.solid_shapes import Solid, SolidKind
-from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
+from robbdd_tools.catalog.api import GripperKind, ObjectModel, Shape, ShapeKind
 from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.cast import Cast
@@ -43,6 +43,11 @@ if TYPE_CHECKING:
 
 TORSION, ROLLING = 0.005, 0.0005
 """Torsional and rolling friction of objects, m; without rolling friction, a ball never comes to rest."""
+LIP = 5e-4
+"""The lip of a suction cup follows a surface up to this distance (m).
+
+Without it, the first micrometre by which a pull lifts the rigid face would end the vacuum, at a part of its force.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +120,8 @@ def compile_world(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pos
     for name, robot in cast.agents.items():
         if (force := cast.chosen.get((name, "grip_force"))) is not None:
             limit_grip(spec, name, robot, force[0])
-        _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (0.0,))[0])
+        lip = LIP if robot.gripper is GripperKind.SUCTION else 0.0
+        _pull_from(spec, [f"{name}/{pad}" for pad in robot.pads], cast.chosen.get((name, "attach_distance"), (lip,))[0])
     shapes = {name: [shape_name(name, i) for i in range(len(one.shapes))] for name, one in cast.objects.items()}
     faces = {name: [f"{name}/{pad}" for pad in robot.pads] for name, robot in cast.agents.items()}
     _yield_slowly(spec, cast, shapes | faces)
