@@ -14,6 +14,7 @@ from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.protocol.specs import ConfigSpec
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.placement import TABLE_TOP
