@@ -148,8 +148,10 @@ class ScenarioRun:
 
     def _report_cast(self, execution: Execution) -> None:
         """Report each element once that is not simulated, that has an unspecific model, or that nothing can touch."""
-        cast = execution.simulation.world.cast
+        world = execution.simulation.world
+        cast = world.cast
         remarks = dict.fromkeys(cast.left_out, "not simulated, as no clause uses them and no .scenex places them")
+        remarks |= dict.fromkeys(world.no_room, "not simulated, as no clause uses them and there is no room for them")
         for name, model in cast.objects.items():
             if model.unspecific:
                 remarks[name] = f"simulated as '{model.name}' of the catalog, as their names say nothing more"

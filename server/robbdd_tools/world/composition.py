@@ -16,7 +16,7 @@ from robbdd_tools.catalog.object_settings import can_move
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.cast import Cast
 from robbdd_tools.world.engine import TIMESTEP, mujoco
-from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.errors import NoRoomLeft, SceneError
 from robbdd_tools.world.friction import (
     ROUGHEST,
     pair_declared,
@@ -59,6 +59,7 @@ class World:
     - ``poses``: the poses of the objects before they settle.
     - ``seed``: the seed of all random choices.
     - ``resampled``: the number of random places that were sampled again because they overlapped or were out of reach.
+    - ``no_room``: the objects that are left out, because there is no room for them and no clause mentions them.
     - ``laid_out``: how far (m) ahead of the working robot's base, and to its left, objects on a table were laid out.
     """
 
@@ -69,15 +70,28 @@ class World:
     seed: int
     resampled: int
     laid_out: Mapping[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
+    no_room: tuple[str, ...] = ()
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
     """Build the world of a scene.
 
     All random choices derive from ``seed`` or from the seed in the scene's configuration. ``actor`` is the agent for
-    which objects are laid out; by default, the first agent. ``instance`` has models and places of elements. Raises
-    ``SceneError`` if an element has no model, a place does not exist or there is no room.
+    which objects are laid out; by default, the first agent. ``instance`` has models and places of elements. Objects
+    that no clause mentions are left out if there is no room for them. Raises ``SceneError`` if an element has no model,
+    a place does not exist or there is no room for another object.
     """
+    try:
+        return _build(scene, seed, actor, instance)
+    except NoRoomLeft as error:
+        if error.name not in scene.unused:
+            raise
+        others = tuple(name for name in scene.objects if name != error.name)
+        built = build_world(replace(scene, objects=others), seed, actor, instance)
+        return replace(built, no_room=(error.name, *built.no_room))
+
+
+def _build(scene: SceneSpec, seed: int, actor: str | None, instance: SceneInstance | None) -> World:
     staging = None if instance is None else Staging(instance, _seed_of(scene, seed))
     cast = cast_scene(scene, staging)
     bases = mounts(cast)

@@ -39,6 +39,14 @@ class SceneError(_WithFault):
         self.entry = entry
 
 
+class NoRoomLeft(SceneError):
+    """There is no place left for the object ``name``."""
+
+    def __init__(self, name: str, where: str) -> None:
+        super().__init__(f"there is no room left for '{name}' {where}")
+        self.name = name
+
+
 class BehaviourError(Exception):
     """The agent cannot continue its behaviour; the message gives the reason and, if known, the time."""
 

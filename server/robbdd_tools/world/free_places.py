@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
 from typing import TYPE_CHECKING
 
-from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.errors import NoRoomLeft
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.working_area import is_on
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from robbdd_tools.catalog.api import ObjectModel, Region
+    from robbdd_tools.catalog.api import ObjectModel, Region, Vector
     from robbdd_tools.world.fixed_obstacles import Obstacle
 
 BEARING = 2.6
@@ -93,13 +93,17 @@ class Wall:
     model: ObjectModel
 
     def is_near(self, x: float, y: float, distance: float) -> bool:
-        """Return whether a point is nearer to the region than ``distance`` (m)."""
-        if self.model.region is None:
-            return False
-        half, yaw = self.model.region.half, self.pose.yaw
+        """Return whether a point is nearer to one of the regions than ``distance`` (m)."""
+        own = self.model.region
+        if own is not None:
+            return self._is_near(own.half, (0.0, 0.0, 0.0), x, y, distance)
+        return any(self._is_near(one.half, one.center, x, y, distance) for one in self.model.parts)
+
+    def _is_near(self, half: Vector, center: Vector, x: float, y: float, distance: float) -> bool:
+        yaw = self.pose.yaw
         x, y, c, s = x - self.pose.position[0], y - self.pose.position[1], cos(yaw), sin(yaw)
-        dx = max(abs(c * x + s * y) - half[0], 0.0)
-        dy = max(abs(c * y - s * x) - half[1], 0.0)
+        dx = max(abs(c * x + s * y - center[0]) - half[0], 0.0)
+        dy = max(abs(c * y - s * x - center[1]) - half[1], 0.0)
         return hypot(dx, dy) < distance
 
 
@@ -120,7 +124,7 @@ def draw_place(
 ) -> tuple[Pose, int]:
     """Return a free pose in the first field that has one, and the number of rejected random samples.
 
-    Raises ``SceneError`` if no field has one; for an exact place, the error names what is in the way.
+    Raises ``NoRoomLeft`` if no field has one; for an exact place, the error names what is in the way.
     """
     rejected = 0
     where = ""
@@ -136,7 +140,7 @@ def draw_place(
                 where = f"at its exact place: {in_the_way}"
             else:
                 rejected += 1
-    raise SceneError(f"there is no room left for '{name}' {where}")
+    raise NoRoomLeft(name, where)
 
 
 def _in_the_way(

@@ -17,7 +17,7 @@ from robbdd_tools.catalog.settings import NORMAL
 from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.dropping import Ball, drop
-from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.errors import NoRoomLeft, SceneError
 from robbdd_tools.world.extent import half_sides
 from robbdd_tools.world.fixed_obstacles import fixed_obstacles
 from robbdd_tools.world.free_places import TOUCHING, TRIES, Field, Size, Taken, Wall, draw_place, place_above
@@ -183,7 +183,7 @@ def _apart_from(cast: Cast, name: str, first: Pose, taken: list[Taken]) -> tuple
         if again is None or again == pose:
             return pose, attempt - 1
         pose = again
-    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
+    raise NoRoomLeft(name, f"among {len(taken)} other objects")
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
@@ -254,7 +254,7 @@ def _fields(
     on = (pose, region)
     yield Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP, base, obstacles, on)
     yield Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, obstacles, on)
-    if obstacles:
+    if obstacles and name not in scene.unused:
         # Their boxes may be larger than they are. Whether anything overlaps is checked later.
         yield Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING, base, (), on)
 
