@@ -128,7 +128,7 @@ def section(construct: Construct, picture: Path, shown: list[tuple[str, grammar.
     """Yield the lines of a section."""
     rules = [rule for rule, _ in shown]
     yield from (f"## {construct.title}", "", construct.markdown, "")
-    names = ", ".join(f"`{rule}`" for rule in dict.fromkeys(rules))
+    names = ", ".join(dict.fromkeys(rules))
     yield from (f"![Railroad diagram of {names}; the text says the same]({picture.relative_to(FOLDER).as_posix()})", "")
     if construct.rules:
         yield from code("\n".join(rule_text(construct.source, rule) for rule in dict.fromkeys(rules)))
@@ -184,7 +184,7 @@ def overview() -> str:
     lines += ["| [Studies](studies.md) | the settings of a `.study` |"]
     lines += ["| [Grammar](grammar.md) | all rules and keywords |"]
     lines += ["| [Design](design.md) | why the language is as it is |", ""]
-    lines += ["## Prefixes", "", "Of the vocabulary; models state their own.", ""]
+    lines += ["## Prefixes", "", "The prefixes of the vocabulary. A model declares its own namespaces with `ns`.", ""]
     lines += ["| prefix | namespace |", "|---|---|"]
     lines += [f"| `{prefix}` | `{namespace}` |" for prefix, namespace in PREFIXES.items()]
     return "\n".join([*lines, ""])
@@ -195,7 +195,11 @@ def words_page() -> str:
     catalog = load_catalog()
     lines = ["# Predicates and behaviours", "", "The phrases of the catalog, as they are installed with RobBDD."]
     lines += ["[Packages of yours](../own-words.md) can add others. `docs/site/reference.py` writes this page.", ""]
-    lines += ["`<…>` is a variable or an element of a scene, `#…` a number with a unit or a variable, `$…` a name.", ""]
+    lines += [
+        "`<…>` is a variable or an element of a scene, `#…` a number with a unit or a variable that has such values, "
+        "`$…` a name.",
+        "",
+    ]
     for title, words in (("Predicates", catalog.predicates), ("Behaviours", catalog.behaviours)):
         lines += [f"## {title}", ""]
         for name in sorted(words):
@@ -225,7 +229,7 @@ def studies_pages() -> Mapping[Path, str]:
         picture = FOLDER / "diagrams" / f"studies-{name.lower()}.svg"
         shown = [(rule, rules[rule]) for rule in _rules_of_setting(rules, name)]
         found[picture] = drawing(shown, rules)
-        names = ", ".join(f"`{rule}`" for rule, _ in shown)
+        names = ", ".join(rule for rule, _ in shown)
         lines += [f"## {name}", "", "```text", form, "```", "", meaning, ""]
         lines += [f"![Railroad diagram of {names}; the text says the same](diagrams/{picture.name})", ""]
         lines += code("\n".join(rule_text("study", rule) for rule, _ in shown))

@@ -36,19 +36,20 @@ HEAD = """# Time in clauses
 Each picture shows one clause, judged on the same nine seconds: a part waits, is carried to a bin, arrives after 4 s, is
 bumped away at 5.5 s, and returns. In most of them, the curve is the margin of *the part is nearer than 0.1 m to the
 bin*: above zero, the predicate holds. The window of the clause is shaded, and the dot is the sample that decides.
+`pick-end` occurs at 1.6 s, and `place-end` at 4.2 s.
 [semantics.md](semantics.md#windows) has the rules. `docs/site/time_page.py` judges the clauses and writes this page.
 """
 SECTIONS: Mapping[str, tuple[str, tuple[tuple[str, str, str], ...]]] = {
     "At one instant": (
-        "Without a duration, one sample decides: the last one before the event, or the first one after it.",
+        "Without a duration, one sample decides: the last one at or before the event, or the first one at or after it.",
         (
             ("before", NEAR, 'before event "place-end"'),
             ("after", NEAR, 'after event "place-end"'),
         ),
     ),
     "Throughout": (
-        "With a duration, or between two events, every sample of the window counts. The smallest margin is that of\n"
-        "the clause, so a short disturbance is enough to violate it.",
+        "With a duration, or between two events, every sample of the window counts. The margin of\n"
+        "the clause is the smallest margin in the window, so a short disturbance is enough to violate the clause.",
         (
             ("seconds-before", NEAR, 'for 0.3 seconds before event "place-end"'),
             ("seconds-after", NEAR, 'for 2 seconds after event "place-end"'),
@@ -56,7 +57,8 @@ SECTIONS: Mapping[str, tuple[str, tuple[tuple[str, str, str], ...]]] = {
         ),
     ),
     "At some time": (
-        "One sample of the window suffices. The largest margin is that of the clause: a deadline that is met.",
+        "One sample of the window suffices. The margin of the clause is the largest margin in the window. Use this\n"
+        "form for deadlines. The time is the first at which the predicate held.",
         (
             ("within-after", NEAR, 'at some time within 3 seconds after event "pick-end"'),
             ("within-too-short", NEAR, 'at some time within 1.5 seconds after event "pick-end"'),
@@ -64,7 +66,8 @@ SECTIONS: Mapping[str, tuple[str, tuple[tuple[str, str, str], ...]]] = {
         ),
     ),
     "Which occurrence": (
-        "The bell rings at 4.8 s and at 5.8 s. `every` judges each occurrence, and all of them must hold.",
+        "The bell rings at 4.8 s and at 5.8 s. `every` judges the clause at each occurrence, and it must\n"
+        "hold at all of them.",
         (
             ("first", NEAR, 'after the first event "bell"'),
             ("last", NEAR, 'for 0.5 seconds after the last event "bell"'),

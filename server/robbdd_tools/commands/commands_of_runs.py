@@ -101,7 +101,14 @@ def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
     text += "; or a folder of logs of real robots"
     compare.add_argument("before", metavar="BEFORE", help=text)
     compare.add_argument("after", metavar="AFTER", help="as BEFORE")
-    compare.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path(), help="in the runs' project")
+    compare.add_argument(
+        "path",
+        metavar="FILE|DIR",
+        type=Path,
+        nargs="?",
+        default=Path(),
+        help="a model or folder of the project in whose store the runs are",
+    )
     text = "the change that is accepted: 'no clause worse than 2 points', 'at-goal not worse than 5 mm'; repeats"
     compare.add_argument("--gate", metavar="TEXT", action="append", help=text)
     compare.add_argument("--by-margin", action="store_true", help="margins decide, too, not only pass rates")
@@ -112,7 +119,7 @@ def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
     compare.add_argument("--markdown", metavar="OUT", type=Path, help=text)
     text = "write the comparison as one page, with replays of executions that flipped side by side"
     compare.add_argument("--html", metavar="OUT", type=Path, help=text)
-    text = "for --html, execute the first N executions of a study that flipped again, for their replays"
+    text = "for --html, with `--html`: execute the first N flipped executions of a study again, to show their replays"
     compare.add_argument("--again", metavar="N", type=positive, default=0, help=text)
     text = "agent processes at a time for --again (default: as many as there are cores)"
     compare.add_argument("--jobs", metavar="N", type=positive, help=text)

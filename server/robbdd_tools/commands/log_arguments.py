@@ -38,7 +38,7 @@ def allow_log(parser: argparse.ArgumentParser) -> None:
     log.add_argument("--clock", metavar="TOPIC=SECONDS", type=_clock, action="append", help=text)
     text = "messages that report an event: 'evt-pick-end=/gripper/closed becomes true'; repeats"
     log.add_argument("--event", metavar="EVENT=SIGNAL", type=_event, action="append", help=text)
-    text = "begin of the period that is judged, in seconds since the begin of the log"
+    text = "start of the period that is judged, in seconds since the start of the log"
     log.add_argument("--from", dest="begin", metavar="SECONDS", type=_moment, help=text)
     log.add_argument("--until", dest="end", metavar="SECONDS", type=_moment, help="end of the period that is judged")
     text = "the log is still recorded: judge each clause when its window has closed, until nothing was written for this"

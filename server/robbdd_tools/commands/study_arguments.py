@@ -23,7 +23,7 @@ def add_study(parser: argparse.ArgumentParser) -> tuple[argparse.ArgumentParser,
         one.add_argument("--jobs", metavar="N", type=positive, help=text)
         text = "execute the study on a cluster: the address of its Dask scheduler, such as tcp://host:8786"
         one.add_argument("--scheduler", metavar="ADDRESS", default="", help=text)
-        text = "also send this file or folder to the workers, which users' code reads; may be repeated"
+        text = "also send this file or folder, which users' code reads, to the workers; may be repeated"
         one.add_argument("--send", metavar="PATH", action="append", type=Path, default=[], help=text)
         text = "connect to endpoints on this host; may be repeated (always: endpoint-hosts in your settings)"
         one.add_argument("--allow-host", metavar="HOST", action="append", help=text)
@@ -90,7 +90,7 @@ def _add_plan(plan: argparse.ArgumentParser) -> None:
     plan.add_argument("--width", metavar="W", type=float, help="the wanted width of its interval, such as 0.05")
     text = "the change of the pass rate that a comparison is to show, such as -0.05"
     plan.add_argument("--difference", metavar="D", type=float, help=text)
-    text = "the share of pairs with equal seeds whose verdict differs (default: the size of the difference)"
+    text = "the share of pairs with equal seeds in which the two verdicts differ (default: the size of the difference)"
     plan.add_argument("--discordance", metavar="P", type=float, help=text)
     plan.add_argument("--power", metavar="P", type=_between, default=0.8, help="probability to show it (default: 0.8)")
     plan.add_argument("--level", metavar="P", type=_between, default=0.95, help="confidence level (default: 0.95)")

@@ -114,7 +114,9 @@ def word_meaning(word: Predicate | Behaviour) -> str:
     unit = getattr(word, "unit", None)
     if unit is not None:
         judged = f"a margin in {unit}" if unit else "a margin of +1 or −1"
-        lines.append(f"Judged with {judged}, positive where it holds." if getattr(word, "evaluate", None) else UNJUDGED)
+        lines.append(
+            f"Judged with {judged}, 0 or positive where it holds." if getattr(word, "evaluate", None) else UNJUDGED
+        )
     events = getattr(word, "events", ())
     if events:
         lines.append("Events: " + ", ".join(f"`{event}`" for event in events))

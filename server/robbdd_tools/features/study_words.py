@@ -39,7 +39,7 @@ FORMS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "traces": (
             "traces: failures N MB\ntraces: all N MB",
             "Keeps traces (MCAP) of the executions that do not hold, or of all, up to N MB in total. "
-            "Those of failures have precedence, then the earlier ones. Without it: none.",
+            "Traces of failures are kept first, then those of earlier executions. Without it: none.",
         ),
         "cover": (
             "cover: { levels N %, pairs N %, clauses N %, events N %, predicates N % }",

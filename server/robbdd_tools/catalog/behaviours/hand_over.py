@@ -14,8 +14,8 @@ HAND_OVER = Behaviour(
     sentence='"{agent}" hands over "{object}" to "{receiver}"',
     events=("hand-over-start", "laid-down", "hand-over-end"),
     doc=(
-        "The agent puts the object down at a place of a table that both arms reach, and makes room; then the receiver "
-        "grasps and lifts it."
+        "The agent puts the object down at a place on a table that both arms reach, and moves aside; then the receiver "
+        "grasps and lifts the object."
     ),
     synonyms=("gives", "passes", "handover", "transfers"),
 )

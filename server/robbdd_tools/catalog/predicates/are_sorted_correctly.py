@@ -44,8 +44,8 @@ ARE_SORTED_CORRECTLY = Predicate(
     sentence='"{objects}" are sorted correctly into "{workspaces}"',
     unit="m",
     doc=(
-        "Every object of the set lies in a workspace of the set that is correct for it: 'workspace bin { correct for: "
-        "obj <part> }' in the scene. Unknown for an object without a stated workspace."
+        "Every object of the set lies in a workspace of the set that is correct for it: `workspace bin { correct for: "
+        "obj <part> }` in the scene. Unknown for an object without a stated workspace."
     ),
     measured="length",
     evaluate=margin,

@@ -72,9 +72,9 @@ DOES_NOT_COLLIDE = Predicate(
     unit=METRES,
     doc=(
         "The target is not pushed: the path it travels within the window stays below 0.05 m (displacement_limit). An "
-        "immovable target (a fixed object, an agent) is not hit: the contact force of the agent, and of the object "
-        "that it grips beyond its weight, stays below 140 N (force_limit), the limit of ISO/TS 15066 for a clamped "
-        "hand. With a force_limit, any target is judged by force."
+        "immovable target (a fixed object, an agent) is not hit: the contact force of the agent, plus that of a "
+        "gripped object in excess of its weight, stays below 140 N (force_limit), the limit of ISO/TS 15066 for a "
+        "clamped hand. With a force_limit, any target is judged by force."
     ),
     evaluate=margin,
     unit_for=unit,

@@ -29,7 +29,7 @@ DOES_NOT_TOUCH = Predicate(
     unit="N",
     doc=(
         "No contact force of 0.01 N or more acts between the two, in any step of the physics. What an agent grips "
-        "is not part of it."
+        "does not count as part of the agent."
     ),
     measured="nothing",
     evaluate=margin,

@@ -47,10 +47,10 @@ HAS_CONFIG = Predicate(
     sentence='"{target}" has config "{name}" = "{value}"',
     unit="",
     doc=(
-        "The target is set up with this value: position_range, position_ahead, position_left (m), height_scale, "
-        "width_scale, size_scale, ee_speed, approach_speed (m/s), travel_height, carry_clearance (m), grip_force (N), "
-        "grip_time, release_time, contact_time (s), mass (kg), friction or seed; or it is judged by it: max_speed "
-        "(m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
+        "The target is set up with one of these configurations: position_range, position_ahead, position_left (m), "
+        "height_scale, width_scale, size_scale, ee_speed, approach_speed (m/s), travel_height, carry_clearance (m), "
+        "grip_force (N), grip_time, release_time, contact_time (s), mass (kg), friction or seed; or it is judged by "
+        "it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     measured="nothing",
     evaluate=margin,

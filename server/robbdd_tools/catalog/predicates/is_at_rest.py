@@ -34,6 +34,6 @@ IS_AT_REST = Predicate(
     slots=(Slot("object", Kind.OBJECT, "bdd:ref-object"),),
     sentence='"{object}" is at rest',
     unit="m/s",
-    doc="No point of the object moves faster than 0.01 m/s, neither by a shift nor by a turn.",
+    doc="No point of the object moves faster than 0.01 m/s, neither by translation nor by rotation.",
     evaluate=margin,
 )

@@ -33,7 +33,7 @@ IS_CORRECT_FOR = Predicate(
     sentence='"{workspace}" is correct for "{object}"',
     unit="",
     doc=(
-        "The object belongs in the workspace: 'workspace bin { correct for: obj <part> }' in the scene. "
+        "The object belongs in the workspace: `workspace bin { correct for: obj <part> }` in the scene. "
         "Unknown for an object without a stated workspace."
     ),
     measured="nothing",

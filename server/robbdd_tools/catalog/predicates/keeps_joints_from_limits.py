@@ -28,6 +28,6 @@ KEEPS_JOINTS_FROM_LIMITS = Predicate(
     ),
     sentence='"{agent}" keeps its joints "{share}" from their limits',
     unit="%",
-    doc="Each joint of the arm is at least a share of its range, such as 5 %, away from its limits of position.",
+    doc="Each joint of the arm is at least a share of its range, such as 5 %, away from its position limits.",
     evaluate=margin,
 )

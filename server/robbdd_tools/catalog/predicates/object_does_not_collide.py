@@ -80,9 +80,9 @@ OBJECT_DOES_NOT_COLLIDE = Predicate(
     sentence='"{one}" does not collide with "{other}"',
     unit=METRES,
     doc=(
-        "An object does not push another thing: the path on which it moves the thing by contact stays below 0.05 m "
-        "(displacement_limit). What cannot move (a fixed object, an agent) is hit with less than 140 N (force_limit). "
-        "'does not touch' allows no contact at all; 'does not collide' is about an agent."
+        "An object does not push another element: the path along which contact moves the element stays below 0.05 m "
+        "(displacement_limit). An element that cannot move (a fixed object, an agent) is hit with less than 140 N "
+        "(force_limit). 'does not touch' allows no contact at all; 'does not collide' is about an agent."
     ),
     evaluate=margin,
     unit_for=unit,
