@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from robbdd_tools.commands.failure_summary import MAX_CAUSES, failure_summary
 from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.messages import ClauseJudged
@@ -50,4 +52,17 @@ def test_reasons_that_differ_in_measured_numbers_only_are_one_cause() -> None:
     every = [scenario(index, ("violated", -0.1 * index, f"it took {index}.25 s", ""), holds) for index in (8, 9)]
     assert [words for _, words in failure_summary(every)] == [
         "✗ c5 in 2 scenarios, worst: it took 9.25 s (violated by −900 mm)"
+    ]
+
+
+def test_clauses_of_one_title_in_one_scenario_are_one_failure_of_it() -> None:
+    """The iterations of a loop, or several behaviours."""
+    failed = ("violated", -0.1, STUCK, "")
+    every = [scenario(index, failed, failed) for index in range(2)]
+    for one in every:
+        first, second = one.spec.clauses[:2]
+        one.spec = replace(one.spec, clauses=(first, replace(first, line=second.line)))
+    assert [words for _, words in failure_summary(every[:1])] == [f"✗ c5: {STUCK} (violated by −100 mm)"]
+    assert [words for _, words in failure_summary(every)] == [
+        f"✗ c5 in 2 scenarios, worst: {STUCK} (violated by −100 mm)"
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.verdict import Outcome
@@ -25,20 +26,22 @@ _MEASURED = re.compile(r"\d+\.\d+")
 def failure_summary(
     scenarios: Iterable[ScenarioResult], errors: Mapping[str, int] | None = None
 ) -> list[tuple[Outcome, str]]:
-    """Return a line for each cause of failures, most frequent first: its clause, its reason and how often it occurs.
+    """Return a line for each cause of failures, most frequent first: its clause, its reason and its scenarios' number.
 
-    Clauses that are unknown only because of another one do not count. The line shows the worst margin of all its
-    scenarios. Reasons that differ only in measured numbers ("it took 8.14 s") are one cause. ``errors`` maps the
-    printed faults in users' code to their numbers, which replace reasons.
+    A loop may have several clauses of one title in a scenario. Clauses that are unknown only because of another one do
+    not count. The line shows the worst margin of all its scenarios. Reasons that differ only in measured numbers ("it
+    took 8.14 s") are one cause. ``errors`` maps the printed faults in users' code to their numbers, which replace
+    reasons.
     """
-    groups: dict[tuple[Outcome, str, str], list[tuple[ClauseSpec, ClauseJudged]]] = {}
-    for scenario in scenarios:
+    groups: dict[tuple[Outcome, str, str], dict[int, list[tuple[ClauseSpec, ClauseJudged]]]] = {}
+    for index, scenario in enumerate(scenarios):
         for clause, judged in _causes(scenario):
             number = (errors or {}).get(judged.fault)
             if number is not None:
                 judged = replace(judged, reason=f"no evidence, because of error {number}")
             reason = _MEASURED.sub("", judged.reason)
-            groups.setdefault((Outcome(judged.verdict), clause_title(clause), reason), []).append((clause, judged))
+            cause = Outcome(judged.verdict), clause_title(clause), reason
+            groups.setdefault(cause, {}).setdefault(index, []).append((clause, judged))
     found = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0][0] is not Outcome.VIOLATED))
     lines = [(outcome, _line(outcome, name, failures)) for (outcome, name, _), failures in found[:MAX_CAUSES]]
     if len(found) > MAX_CAUSES:
@@ -55,8 +58,9 @@ def _causes(scenario: ScenarioResult) -> Iterator[tuple[ClauseSpec, ClauseJudged
             yield clause, readable(judged, scenario.spec)
 
 
-def _line(outcome: Outcome, name: str, failures: list[tuple[ClauseSpec, ClauseJudged]]) -> str:
-    clause, worst = min(failures, key=lambda failure: failure[1].robustness or 0.0)
+def _line(outcome: Outcome, name: str, failures: Mapping[int, list[tuple[ClauseSpec, ClauseJudged]]]) -> str:
+    every = chain.from_iterable(failures.values())
+    clause, worst = min(every, key=lambda failure: failure[1].robustness or 0.0)
     if len(failures) == 1:
         return f"{SIGNS[outcome]} {name}: {failure_words(worst, clause)}"
     count = f"in {len(failures)} scenarios{'' if worst.robustness is None else ', worst'}"
