@@ -222,3 +222,11 @@ def test_foreign_models_pass_the_check() -> None:
     files = corpus(".bdd", ".scene")
     done = robbdd("check", *files)
     assert done.returncode == 0, done.stdout
+
+
+def test_a_closed_pipe_is_no_problem_of_the_command() -> None:
+    def work() -> int:
+        raise BrokenPipeError
+
+    with pytest.raises(BrokenPipeError):
+        report_problems(Outputs(), viewer=False, work=work)

@@ -93,6 +93,8 @@ def report_problems(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) 
         return OK
     except RobbddError as error:
         return fail(str(error))
+    except BrokenPipeError:  # of the output, such as `robbdd compare … | head`: nobody reads more
+        raise
     except OSError as error:
         return fail(f"{error.filename or outputs.keeping.folder or outputs.report}: {error.strerror or error}")
 
