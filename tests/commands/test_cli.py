@@ -14,6 +14,7 @@ import pytest
 
 from fork_kit import ROBBDD
 from kit import EXAMPLES, MODEL, SCENE, corpus, default_signals, make_endless, schema_errors
+from robbdd_tools.commands.run import Outputs, report_problems
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 
