@@ -16,6 +16,7 @@ from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import half_sides, outline_of
 from robbdd_tools.world.free_places import Field
+from robbdd_tools.world.placement import footprint
 from robbdd_tools.world.pose import Pose
 from robbdd_tools.world.put_down import Floor, targets
 from robbdd_tools.world.reaching import approaches
@@ -324,3 +325,14 @@ def test_a_workspace_without_a_site_of_its_name_is_the_site_workspace(tmp_path: 
     found = {slot: [region.half[1] for _, region in cast.regions[slot]] for slot in SLOTS}
     assert found == {SLOTS[0]: [0.0255], SLOTS[1]: [0.0255], SLOTS[2]: [0.09]}
     assert not dict(space_remarks(SLOTTED, cast))
+
+
+def test_on_a_small_place_a_part_does_not_stick_out_where_another_one_stands_beside_it(tmp_path: Path) -> None:
+    """The pan is 0.11 m wide and the box fits on it in any direction; a second box leaves the hand no room there."""
+    pan = BED + SITE.format(0.055, 0.055)
+    run = cell(tmp_path, pan, 0.0, 1, beside=(0.55, -0.15, 0.12))
+    places = [one.position for one in targets(run.simulation, run.simulation.robots[PANDA], BOX, NEST_WS)]
+    assert places
+    radius = footprint(run.simulation.world.cast.objects[BOX])
+    for x, y, _ in places:
+        assert max(abs(x - 0.45), abs(y + 0.15)) <= 0.055 - radius + 1e-9

@@ -137,10 +137,13 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
     table = Pose((float(position[0]), float(position[1]), float(position[2])), yaw)
     # Whether an arm reaches a user's own place is up to the arm. A part may fit only into the middle of a small one.
     field = field_before(robot.base, table, replace(model, region=region)) if max(region.half[:2]) > SMALL else None
+    radius = footprint(simulation.world.cast.objects[name])
     (cx, cy), (hx, hy) = field or area_of(table, region)
+    if field is None:
+        # At the border of a pan, the object would stick out and might topple off.
+        hx, hy = max(hx - radius, 0.0), max(hy - radius, 0.0)
     shares = np.linspace(-1.0, 1.0, GRID)
     others = _others(simulation, name, carrier)
-    radius = footprint(simulation.world.cast.objects[name])
     grid = [(float(cx + sx * hx), float(cy + sy * hy)) for sx in shares for sy in shares]
     points = [one for one in grid if is_on(table, region, *one) and abs(bearing(robot.base, *one)) <= BEARING]
     crowding = {point: _crowding(*point, others, radius) for point in points}
