@@ -19,6 +19,7 @@ from robbdd_tools.catalog.executable import (
 )
 from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
 from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.fixed_faults import fixed_faults
 from robbdd_tools.world.placement import TABLE_TOP
 from world.arms import MJCF
 from world.scene_instances import instance, link
@@ -109,3 +110,32 @@ def test_of_two_contacts_of_a_pair_the_deeper_one_counts() -> None:
     scene = replace(ON_TABLE, objects=("env:cube1", "env:cube2", "env:bench"))
     with pytest.raises(SceneError, match=r"'env:cube1' and 'env:cube2' overlap by 12 mm: "):
         course(scene, cube1=(0.5, 0.1, 0.3), cube2=(0.5, 0.1 + 2 * HALF_CUBE - 0.012, 0.31))
+
+
+@pytest.mark.parametrize(("height", "depth"), [(0.1, 0), (0.09, 10)])
+def test_two_fixed_things_that_overlap_are_found_while_editing(tmp_path: Path, height: float, depth: int) -> None:
+    """Nothing moves them, and nothing else would say that one was placed 10 mm too low."""
+    (tmp_path / "plate.xml").write_text(
+        '<mujoco><worldbody><body name="plate"><geom type="box" size=".3 .3 .05" pos="0 0 .05"/></body>'
+        "</worldbody></mujoco>"
+    )
+    elements = tuple(
+        Realisation(
+            f"env:{name}",
+            (
+                ModelSource(
+                    f"x:{name}",
+                    "mjcf",
+                    "file",
+                    "plate.xml",
+                    bodies=((f"x:g.{name}", "plate"),),
+                    origin=Origin(str(tmp_path / "cell.scenex"), 7, 5),
+                ),
+            ),
+        )
+        for name in ("lower", "upper")
+    )
+    links = link("x:g.lower.foot", (0.5, 0.0, 0.0)), link("x:g.upper.foot", (0.5, 0.0, height))
+    found = [str(one) for one in fixed_faults(instance(*links, elements=elements))]
+    words = [f"'env:lower' and 'env:upper' overlap by {depth} mm: nothing may overlap at the start"] if depth else []
+    assert [one[one.index("'env") :] for one in found] == words

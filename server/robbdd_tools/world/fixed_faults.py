@@ -55,7 +55,7 @@ def fixed_faults(instance: SceneInstance) -> Iterator[SceneError]:
         except SceneError as error:
             yield error
     try:
-        refuse_overlaps(simulated(staging, placed))
+        refuse_overlaps(simulated(staging, placed), also_fixed=True)
     except SceneError as error:
         yield error
 
