@@ -95,11 +95,11 @@ def test_one_word_means_what_it_means_at_its_place() -> None:
     given, when = "x: holds(<p> is at rest, before <e>)", "event <e> occurs <r> picks <p>"
     template = f"Scenario Template (ns=t) a {{ var p var r Given: {given} When: {when} }}"
     assert "Acceptance criteria with variables" in at(template.replace("Scenario", "Scen$0ario"))
-    assert "A template in a scene" in at(f"User Story (ns=t) s {{ {STORY_ROW.replace('Scenario', 'Scen$0ario')} }}")
+    assert "a template in a scene" in at(f"User Story (ns=t) s {{ {STORY_ROW.replace('Scenario', 'Scen$0ario')} }}")
     assert "What must be true before the work begins" in at(template.replace("Given", "Gi$0ven"))
     assert "The event must occur" in at(template.replace("event <", "eve$0nt <"))
     assert "An event of the template" in at(template.replace("Given", "ev$0ent near when <p> is at rest Given"))
-    assert "A template in a scene" not in at(template.replace("var r ", "var r var scen$0e "))
+    assert "a template in a scene" not in at(template.replace("var r ", "var r var scen$0e "))
 
 
 STORY_ROW = "Scenario one { template: <a> scene: <s> variation: var <a.p>: { 1 } }"
@@ -125,7 +125,7 @@ def test_the_words_before_the_scenarios_of_a_story_are_described() -> None:
 def test_the_particular_meaning_of_a_place_comes_before_the_general_one() -> None:
     clause = "x: holds(<p> is at rest, 2 seconds aft$0er <e>)"
     found = at(f"Scenario Template (ns=t) a {{ When: <r> picks <p> Then: {clause} }}")
-    assert 0 <= found.index("Judged throughout the 2 s") < found.index("At the first sample after the event")
+    assert 0 <= found.index("Judged throughout the 2 s") < found.index("At the first sample at or after the event")
 
 
 def test_each_word_of_a_setting_of_a_study_is_described() -> None:

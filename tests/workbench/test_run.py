@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import re
 import shutil
+from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
 
@@ -161,8 +162,9 @@ def test_a_replay_of_a_run_has_the_same_traces(model: robbdd.Model, stored: robb
 def test_a_replay_reports_a_trace_that_differs(model: robbdd.Model, stored: robbdd.Run) -> None:
     (path,) = (stored.folder / "traces").glob("*.mcap")
     evidence = read_trace(path)
-    evidence.trace.positions[-1] += 1e-9
-    write_trace(path, evidence, [])
+    moved = evidence.trace.positions.copy()
+    moved[-1] += 1e-9
+    write_trace(path, replace(evidence, trace=replace(evidence.trace, positions=moved)), [])
     replayed = robbdd.replay(robbdd.find_run("latest", model.path), jobs=1)
     assert not replayed.is_identical
     assert "position of env:" in replayed.traces[0].difference
