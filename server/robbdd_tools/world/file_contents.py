@@ -164,6 +164,17 @@ def make_solid(spec: Any) -> list[str]:
     )
 
 
+def touch_at_surfaces(spec: Any) -> list[str]:
+    """Let shapes exert forces only where they touch; return what was changed.
+
+    With a margin, an arm would push things that are some way off.
+    """
+    away = [one for one in (*spec.geoms, *spec.pairs) if one.margin or one.gap]
+    for one in away:
+        one.margin = one.gap = 0.0
+    return [f"margins of {len(away)} contacts, removed: they would act at a distance"] if away else []
+
+
 def _rigid_with(body: Any) -> Iterator[Any]:
     """Yield a body and the bodies that are fixed to it, except those that carry it."""
     yield body

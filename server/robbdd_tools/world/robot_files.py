@@ -26,6 +26,7 @@ from robbdd_tools.world.file_contents import (
     note_changes,
     put_at_origin,
     reduce_to_arm,
+    touch_at_surfaces,
 )
 from robbdd_tools.world.finger_motion import FingerMotion, set_finger_motion
 from robbdd_tools.world.gripper_actuators import GripperParts
@@ -91,7 +92,7 @@ def _read_robot(source: ModelSource, name: str, tilt: Tilt | None) -> RobotModel
     arm = semantics.complete(spec, stated)
     uses_group = semantics.palm and not stated.pads and not stated.tool
     chain = path_to(spec.body(semantics.palm)) if uses_group else _chain(spec, source, arm, changes)
-    changes += _solid(spec, source)
+    changes += [*_solid(spec, source), *touch_at_surfaces(spec)]
     joints = _joints(source, chain)
     refuse_uncoupled(spec, source, chain, joints)
     if followers := followers_among(spec, joints):
