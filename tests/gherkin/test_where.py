@@ -77,7 +77,12 @@ def test_a_part_of_the_values_decides_where_the_others_cannot_matter() -> None:
         ("", 1, "expected a variable instead of the end"),
         ("robot", 6, "after 'robot'"),
         ("robot=", 7, "expected a value"),
-        ("robot=panda speed=2", 13, "expected 'and', 'or' or the end instead of 'speed'"),
+        (
+            "speed=1.5 m/s",
+            11,
+            "or the end instead of 'm/s'; a value with spaces needs quotes, such as speed='1.5 m/s'",
+        ),
+        ("robot=panda 'x'", 13, "expected 'and', 'or' or the end instead of 'x'"),
         ("robot=panda and", 16, "expected a variable instead of the end"),
         ("(robot=panda", 13, "expected ')' for the '(' in column 1"),
         ("robot=panda)", 12, "instead of ')'"),

@@ -187,7 +187,9 @@ class _Parser:
     def expect_end(self) -> None:
         token = self._next()
         if token.kind != "end":
-            raise WhereError(token.column, f"expected 'and', 'or' or the end instead of '{token.text}'")
+            words = f"expected 'and', 'or' or the end instead of '{token.text}'"
+            hint = "; a value with spaces needs quotes, such as speed='1.5 m/s'" if token.kind == "word" else ""
+            raise WhereError(token.column, words + hint)
 
     def _joined(self, operator: Literal["and", "or"], part: Callable[[], Expression]) -> Expression:
         parts = [part()]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.monitor.beside_gaps import decided_beside_gaps
 from robbdd_tools.monitor.compound import CompoundEvaluator
 from robbdd_tools.monitor.compound_samples import judge_samples
 from robbdd_tools.monitor.durations import NOT_AN_INTERVAL, judge_duration
@@ -76,6 +77,7 @@ def judge(
         return unknown(missing.reason, Cause.NO_EVENT)
     assert rows is not None
     evidence = WindowEvidence(trace, rows, regions)
+    closing = closing_time(constraint, trace) if constraint.some_time else None
     compound = predicate.evaluate if isinstance(predicate.evaluate, CompoundEvaluator) else None
     try:
         samples = None if compound is None else compound.samples(evidence, arguments)
@@ -85,8 +87,11 @@ def judge(
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
     except Unobserved as gap:
-        return unknown(str(gap), Cause.UNOBSERVED)
-    closing = closing_time(constraint, trace) if constraint.some_time else None
+        if compound is not None or condition is not None:
+            return unknown(str(gap), Cause.UNOBSERVED)
+        some_time = constraint.some_time
+        decided = decided_beside_gaps(predicate, arguments, evidence, str(gap), closing, some_time=some_time)
+        return decided or unknown(str(gap), Cause.UNOBSERVED)
     if samples is not None:
         return judge_samples(samples, evidence.times, applies, closing, missing, some_time=constraint.some_time)
     if applies is not None:
