@@ -62,6 +62,10 @@ def test_sorted_into_asks_every_object_for_some_workspace() -> None:
     both = ("tray_ws", "far_ws")
     assert judged("sorted-into", trace, objects=("ball", "cube"), workspaces=both).outcome is Outcome.HOLDS
     assert judged("sorted-into", trace, objects=("ball", "cube"), workspaces=("tray_ws",)).outcome is Outcome.VIOLATED
+    for words in ("sorted-into", "are-sorted-correctly"):
+        for objects, workspaces, slot in (((), both, "objects"), (("ball",), (), "workspaces")):
+            nothing = judged(words, trace, objects=objects, workspaces=workspaces)
+            assert (nothing.outcome, nothing.reason) == (Outcome.UNKNOWN, f"the set of {slot} is empty")
     assert judged("sorted-into", trace, objects=("ball", "nut"), workspaces=both).robustness == pytest.approx(-0.1)
 
 

@@ -100,6 +100,7 @@ NEGATIVE = "the limit '-1 m{}' is negative, so its clause would always have the 
             '"ball" is farther than "1 kg" from "cube" after event "t:e"',
             "'1 kg' is a mass, not a length: write a length with its unit, as in '5 m'",
         ),
+        ('"ball" is farther than "1e400 m" from "cube" after event "t:e"', "the number in '1e400 m' is too large"),
     ],
 )
 def test_a_limit_that_is_no_limit_decides_nothing(sentence: str, reason: str) -> None:

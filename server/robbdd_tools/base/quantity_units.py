@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from math import pi
+from math import isfinite, pi
 
 UNITS = {
     "m": ("length", 1.0),
@@ -83,7 +83,10 @@ def read_quantity(text: str, dimension: str) -> Quantity:
     measures = UNITS[match[2]][0]
     if measures != dimension:
         raise QuantityError(f"'{text}' is {_article(measures)}, not {_article(dimension)}: {example}")
-    return Quantity(float(match[1]), match[2])
+    value = float(match[1])
+    if not isfinite(value):
+        raise QuantityError(f"the number in '{text}' is too large")
+    return Quantity(value, match[2])
 
 
 def read_limit(text: str, dimension: str) -> Quantity:

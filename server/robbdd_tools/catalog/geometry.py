@@ -6,15 +6,23 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.settings import setting_of
+from robbdd_tools.monitor.unobserved import Unobserved
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import Evidence, FloatArray, Outline, Region, Vector
+    from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray, Outline, Region, Vector
 
 
 GAP = "gap"
 """Name of the quantity of the predicate about gaps: distances of surfaces, which are measured on demand."""
 CONTACT = 1e-3
 """An object at rest may penetrate its support this deep (m): settled contacts of the simulation stay below it."""
+
+
+def refuse_empty_sets(arguments: Arguments) -> None:
+    """Raise ``Unobserved`` if a set among the arguments has no elements: such a clause says nothing."""
+    for slot, value in arguments.items():
+        if not value:
+            raise Unobserved(f"the set of {slot} is empty")
 
 
 def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.catalog.geometry import inside_margin
+from robbdd_tools.catalog.geometry import inside_margin, refuse_empty_sets
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -23,6 +23,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """
     import numpy as np
 
+    refuse_empty_sets(arguments)
     workspaces = tuple(arguments["workspaces"])
     margins: list[FloatArray] = []
     for name in arguments["objects"]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.catalog.geometry import inside_margin, is_configured
+from robbdd_tools.catalog.geometry import inside_margin, is_configured, refuse_empty_sets
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -18,6 +18,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """
     import numpy as np
 
+    refuse_empty_sets(arguments)
     workspaces = tuple(arguments["workspaces"])
     strict = any(is_configured(evidence, each, "exactly_one") for each in _elements(evidence, workspaces))
     margins: list[FloatArray] = []
