@@ -275,3 +275,12 @@ def test_an_orientation_of_zeros_is_named(tmp_path: Path) -> None:
 def test_other_paths_are_no_logs(tmp_path: Path) -> None:
     (tmp_path / "model.bdd").write_text("", encoding="utf-8")
     assert not any(map(is_log, (tmp_path, tmp_path / "model.bdd", tmp_path / "gone.csv", Path("latest"))))
+
+
+def test_a_folder_without_metadata_is_that_of_an_interrupted_recorder(tmp_path: Path) -> None:
+    drive = write(tmp_path / "drive", [transform("cup", (tick, 0, 0), stamp=1 + tick) for tick in range(3)])
+    assert not read_log(drive).unfinished
+    (drive / "metadata.yaml").unlink()
+    found = read_log(drive)
+    assert found.unfinished
+    assert "drive has no metadata.yaml, so its recorder did not end" in found.remarks

@@ -96,7 +96,11 @@ def _read_folder(
         return read_ros_bag(path, clocks, signals, events)
     if len(files) != 1:
         raise UnreadableLog(f"{path} has no {METADATA} and several files: write it with 'ros2 bag reindex {path.name}'")
-    return read_ros_bag(files[0], clocks, signals, events)
+    found = read_ros_bag(files[0], clocks, signals, events)
+    if files[0].suffix.lower() == ".mcap":
+        return found
+    words = f"{path.name} has no {METADATA}, so its recorder did not end"
+    return replace(found, unfinished=True, remarks=(words, *found.remarks))
 
 
 def _checked(path: Path, found: LogContents) -> LogContents:
