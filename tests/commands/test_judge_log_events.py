@@ -93,3 +93,10 @@ def test_observations_that_are_not_judged_are_remarked(models: Path, tmp_path: P
     )
     assert f"{words}; --rate 50 judges all" in judged(models, tmp_path, drive(), "--rate", "20")[1]
     assert words not in judged(models, tmp_path, drive(), "--rate", "50")[1]
+
+
+def test_a_hole_in_a_recording_is_remarked_even_if_it_is_interpolated(models: Path, tmp_path: Path) -> None:
+    words = "the frame 'cube0' is recorded every 20 ms, but not for 0.40 s from 4.00 s on"
+    assert words in judged(models, tmp_path, drive(lost=(4.0, 4.4)))[1]
+    assert "is recorded every" not in judged(models, tmp_path, drive(lost=(4.0, 4.1)))[1]
+    assert "is recorded every" not in judged(models, tmp_path, drive(lost=(4.0, 6.0)))[1]

@@ -118,7 +118,7 @@ def evidence_of(spec: ScenarioSpec, contents: LogContents, request: LogRequest) 
         stated=tuple(name for name in known if name in cast.every_object and frames.is_stated(name)),
         immovable=(*(name for name, model in cast.objects.items() if not can_move(model)), *cast.every_agent),
     )
-    remarks += (*frames.steps(), *_shapes(cast, known), *far_apart(trace))
+    remarks += (*frames.steps(), *frames.holes(), *_shapes(cast, known), *far_apart(trace))
     trace = with_defined_events(trace, spec.defined, cast.regions, numbered=not spec.node)
     return LogEvidence(Evidence(trace, cast.regions), tuple(dict.fromkeys(remarks)), cast)
 

@@ -50,6 +50,8 @@ Poses = tuple["FloatArray", "FloatArray"]
 NAME_WORLD = "name the frame of the world with --world FRAME"
 WORLD = "world"
 MAX_LISTED = 8
+HOLE = 10.0
+"""A recording has a hole where this many usual intervals pass without a pose."""
 CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
@@ -113,6 +115,18 @@ class Frames:
         """Yield a remark on each frame above an agent that steps."""
         used = [self.of[agent] for agent in self._cast.every_agent if agent in self.of]
         yield from steps_of_frames([*used, *self._bases.values()], self._tracks, self._world)
+
+    def holes(self) -> Iterator[str]:
+        """Yield a remark on each frame that was not recorded for long, but no longer than is interpolated."""
+        for frame in sorted(reached((*self.of.values(), *self._bases.values()), self._tracks)):
+            track = self._tracks[frame]
+            waits = np.diff(track.times)
+            if track.static or not len(waits):
+                continue
+            usual, row = float(np.median(waits)), int(np.argmax(np.where(waits > self._max_gap, 0.0, waits)))
+            if waits[row] > HOLE * usual and usual < waits[row] <= self._max_gap:
+                words = f"the frame '{frame}' is recorded every {1000 * usual:.0f} ms, but not for {waits[row]:.2f} s"
+                yield f"{words} from {track.times[row]:.2f} s on: what happened there is interpolated"
 
     def is_stated(self, element: str) -> bool:
         """Return whether the place of an element is stated, by static transforms or the ``.scenex``, not observed.
