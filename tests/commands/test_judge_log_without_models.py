@@ -151,7 +151,9 @@ def test_a_space_that_is_unknown_may_contain_what_is_elsewhere_in_a_known_one(
         boxes = ()
     messages = [*drive(), transform("bin", (4.0, 0.0, 0.2), stamp=0.0, topic="/tf_static")]
     found, remarks = judged(tmp_path, messages, *boxes, *KNOWN, scene=scene)
-    assert ("models of the catalog, by name: y:bin as bin; state others in a .scenex" in remarks) is ("bin" in new)
+    assert ("models of the catalog, by name: y:bin as bin, whose middle is 75 mm from its frame" in remarks) is (
+        "bin" in new
+    )
     assert found["there"]["verdict"] == "unknown"
     assert "is not known: state its box in a .scenex" in found["there"]["reason"]
 

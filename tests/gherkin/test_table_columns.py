@@ -156,7 +156,7 @@ def test_only_properties_of_the_set_are_completed() -> None:
 
 
 def test_hover_describes_the_property_and_the_word() -> None:
-    for cut, expected in (("with colour, ma$0ss", "20 g"), ("wi$0th mass", "tables of features")):
+    for cut, expected in (("with colour, ma$0ss", "20 g"), ("wi$0th mass", "the tables of the elements")):
         case = fixture(f"//- lab.scene\n{scene(cut, COLOURED)}")
         shown = hover(case.snapshot, case.uri, case.cursor)
         assert shown is not None

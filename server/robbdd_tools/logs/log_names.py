@@ -118,8 +118,8 @@ def frame_of(element: str, frames: Iterable[str], stated: Mapping[str, str]) -> 
 def shared_frames(found: Mapping[str, str], stated: Mapping[str, str]) -> dict[str, str]:
     """Return the elements that cannot be where their frame is, because it is that of another element, and why not.
 
-    ``found`` maps elements (CURIE) to frames. A frame belongs to the elements for which it is ``stated``, else to the
-    only one with exactly its name, else to none.
+    ``found`` maps elements (CURIE) to frames. A frame belongs to the elements for which it is ``stated``, and to the
+    only one with exactly its name.
     """
     owners: dict[str, list[str]] = {}
     for element, frame in found.items():
@@ -128,7 +128,7 @@ def shared_frames(found: Mapping[str, str], stated: Mapping[str, str]) -> dict[s
     for frame, elements in owners.items():
         known = [one for one in elements if not {one, local_name(one)}.isdisjoint(stated)]
         exact = [one for one in elements if local_name(one) == frame.rpartition("/")[2]]
-        own = known or (exact if len(exact) == 1 else [])
+        own = [*known, *(exact if len(exact) == 1 else [])]
         for element in elements if len(elements) > 1 else ():
             if element not in own:
                 others = ", ".join(one for one in elements if one != element)
