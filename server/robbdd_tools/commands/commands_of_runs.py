@@ -119,7 +119,7 @@ def _add_compare(commands: AddsCommands) -> argparse.ArgumentParser:
     compare.add_argument("--markdown", metavar="OUT", type=Path, help=text)
     text = "write the comparison as one page, with replays of executions that flipped side by side"
     compare.add_argument("--html", metavar="OUT", type=Path, help=text)
-    text = "for --html, with `--html`: execute the first N flipped executions of a study again, to show their replays"
+    text = "with --html: execute the first N flipped executions of a study again, to show their replays"
     compare.add_argument("--again", metavar="N", type=positive, default=0, help=text)
     text = "agent processes at a time for --again (default: as many as there are cores)"
     compare.add_argument("--jobs", metavar="N", type=positive, help=text)

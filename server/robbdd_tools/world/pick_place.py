@@ -35,10 +35,7 @@ of a millimetre and some milliradians.
 PATIENCE = 30.0
 """Maximum wait for an object to come to rest, s."""
 STOPPED = 0.05
-"""A tool that is farther than this (m) from where its servos hold it was stopped by something.
-
-Compliant arms sag by up to 20 mm under their largest payload.
-"""
+"""A tool that is farther than this (m) from where its servos hold it was stopped by something: loads bend it less."""
 RISE = 1e-3
 """If the travelling height is more than this (m) above the tool, it rises first: on a slant it could hit the place."""
 
