@@ -141,6 +141,32 @@ def test_late_messages_and_pauses_of_a_simulator_are_no_jumps(rate: int, tmp_pat
         assert not any("jump" in one for one in read(tmp_path / str(number), messages).remarks)
 
 
+@pytest.mark.parametrize("rate", [50, 5, 1])
+@pytest.mark.parametrize(("before", "after"), [(3.25, 3.25), (5.0, 5.0), (0.5, 2.0), (1.0, 4.0), (4.0, 1.0)])
+def test_a_simulator_of_any_speed_with_late_messages_does_not_jump(rate: int, before: float, after: float) -> None:
+    clocks = HeaderClocks()
+    published = np.arange(0, 20 * SECOND, SECOND // rate)
+    late = np.rint(np.random.default_rng(0).uniform(0, 46e6, len(published))).astype(np.int64)
+    stamps = np.rint(np.minimum(published, 10 * SECOND) * before + np.maximum(published - 10 * SECOND, 0) * after)
+    order = np.argsort(published + late, kind="stable")
+    clocks.seen_many("/tf", "cup", (WALL + published + late)[order], stamps.astype(np.int64)[order])
+    found = clocks.header_time()
+    assert not found.unusable
+    assert not any("jump" in one for one in found.remarks)
+
+
+@pytest.mark.parametrize(("speed", "jump"), [(0.1, 0.4), (0.5, -0.4), (0.5, 0.4), (3.25, 3.0), (3.25, -3.0)])
+def test_a_clock_of_any_speed_that_is_set_is_noticed(speed: float, jump: float) -> None:
+    clocks = HeaderClocks()
+    for tick in range(200):
+        stamp = 100 + speed * tick / 10 + (jump if tick > 50 else 0)
+        clocks.seen("/tf", "cup", WALL + tick * SECOND // 10, round(stamp * SECOND))
+    found = clocks.header_time()
+    assert found.unusable == {("/tf", "cup")}
+    (remark,) = found.remarks
+    assert f"jump {'back' if jump < 0 else 'ahead'} by " in remark
+
+
 def test_a_source_with_another_delay_is_remarked(tmp_path: Path) -> None:
     tool = [transform("tool", (0, 0, 0), stamp=100 + tick / 50) for tick in range(501)]
     sent = [pose("/camera/cup", (0, 0, 0), stamp=100 + tick / 10) for tick in range(101)]

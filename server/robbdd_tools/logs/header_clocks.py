@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from robbdd_tools.logs.clock_pairs import MIN_DRIFT, MIN_OFFSET, ClockPairs
 
 if TYPE_CHECKING:
-    Nanoseconds = npt.NDArray[np.int64]
+    from robbdd_tools.logs.clock_pairs import Nanoseconds
 
-MIN_OFFSET = 1_000_000_000
-"""Two clocks count as different if they differ by more than this (ns). Smaller differences may be delays."""
-MIN_DRIFT = 100_000_000
-"""If the difference of two clocks changes by more than this (ns) during a log, it counts as a drift."""
 LONG_DELAY = 100_000_000
 """A remark names a difference of two clocks of more than this (ns) that may be a delay."""
-MIN_STEP = 20_000_000
-"""A clock that is set back by less than this (ns) is not noticed."""
-ORDERED = 20
-"""A source is ordered after this many messages in order."""
-FEW = 3
-"""After a step back, at least this many messages follow in order before the newest time is reached again."""
-EVERY = 50_000_000
-"""Pairs of times are kept at intervals of at least this long (ns of reception)."""
 PARTS = 10
 """To find a drift, a log is divided into this many parts."""
 MAX_RATIO = 100
@@ -75,18 +63,18 @@ class HeaderClocks:
 
     stated: Collection[str] = ()
     """Topics whose clocks the user has stated: they count as corrected."""
-    _sources: dict[Source, _Pairs] = field(default_factory=dict[Source, "_Pairs"])
+    _sources: dict[Source, ClockPairs] = field(default_factory=dict[Source, ClockPairs])
 
     def seen(self, topic: str, frame: str, received: int, stamp: int) -> None:
         """Add a message. Messages must be added in the order of their reception."""
         pairs = self._sources.get((topic, frame))
         if pairs is None:
-            pairs = self._sources[topic, frame] = _Pairs()
+            pairs = self._sources[topic, frame] = ClockPairs()
         pairs.add(received, stamp)
 
     def seen_many(self, topic: str, frame: str, received: Nanoseconds, stamps: Nanoseconds) -> None:
         """Add messages (n,), in the order of their reception."""
-        self._sources.setdefault((topic, frame), _Pairs()).extend(received, stamps)
+        self._sources.setdefault((topic, frame), ClockPairs()).extend(received, stamps)
 
     def header_time(self) -> HeaderTime:
         """Return the headers' clock that counts, and the sources that have a different one."""
@@ -118,112 +106,6 @@ class HeaderClocks:
             return HeaderTime(unusable=unusable, remarks=tuple(remarks))
         words = f"the time of reception is {offset / 1e9:.3f} s ahead of the headers, and was corrected"
         return HeaderTime(offset, unusable=unusable, remarks=(words, *remarks))
-
-
-@dataclass
-class _Step:
-    """Headers that went back by ``back`` from ``newest`` (ns), and how many messages have followed in order."""
-
-    newest: int
-    back: int
-    count: int = 1
-
-
-@dataclass
-class _Pairs:
-    """Times of reception and of headers (ns) for a part of a source's messages, in the order of reception."""
-
-    received: array[int] = field(default_factory=lambda: array("q"))
-    stamps: array[int] = field(default_factory=lambda: array("q"))
-    last: tuple[int, int] = (0, 0)
-    jump: int = 0
-    """By how much (ns) the clock of the headers jumped back; 0 if it never did."""
-    ordered: int = 0
-    """How many messages in a row had no earlier time than the one before."""
-    step: _Step | None = None
-
-    def add(self, received: int, stamp: int) -> None:
-        before, newest = self.last
-        if received > before and newest - stamp > MIN_OFFSET:
-            self.jump = max(self.jump, newest - stamp)
-        self._look_for_step(received > before, newest, stamp)
-        self.ordered = self.ordered + 1 if stamp >= newest else 0
-        self.last = received, stamp
-        if (
-            not self.received
-            or received - self.received[-1] >= EVERY
-            or abs((received - stamp) - (self.received[-1] - self.stamps[-1])) > MIN_DRIFT
-        ):
-            self.received.append(received)
-            self.stamps.append(stamp)
-
-    def _look_for_step(self, is_later: bool, newest: int, stamp: int) -> None:
-        """Find a clock that is set back: the messages of an ordered source go back once, and go on in order there.
-
-        A message that is late is a single one, or the source is not ordered.
-        """
-        if self.step is None:
-            if is_later and newest - stamp > MIN_STEP and self.ordered >= ORDERED:
-                self.step = _Step(newest, newest - stamp)
-        elif newest < stamp <= self.step.newest:
-            self.step.count += 1
-            if self.step.count == FEW:
-                self.jump, self.step = max(self.jump, self.step.back), None
-        else:
-            self.step = None
-
-    def extend(self, received: Nanoseconds, stamps: Nanoseconds) -> None:
-        """Add messages (n,): the same as ``add`` for each of them."""
-        before = np.concatenate([[self.last[1]], stamps[:-1]])
-        if self.step is not None or (stamps < before).any():
-            for one, stamp in zip(received.tolist(), stamps.tolist(), strict=True):
-                self.add(one, stamp)
-            return
-        self.ordered += len(stamps)
-        self.last = int(received[-1]), int(stamps[-1])
-        row = 0
-        while row < len(received):
-            if self.received:
-                # The loop visits only rows that may be kept.
-                offset = self.received[-1] - self.stamps[-1]
-                kept = (received[row:] - self.received[-1] >= EVERY) | (
-                    np.abs(received[row:] - stamps[row:] - offset) > MIN_DRIFT
-                )
-                if not kept.any():
-                    return
-                row += int(np.argmax(kept))
-            self.received.append(int(received[row]))
-            self.stamps.append(int(stamps[row]))
-            row += 1
-
-    def leap(self) -> int:
-        """Return by how much (ns) the headers jumped while messages came as before: back, negative ahead; else 0.
-
-        A delayed message is received later than usual, and so are those after a pause of a simulator.
-        """
-        received, stamps = self.arrays()
-        waited, passed, offsets = np.diff(received), np.diff(stamps), received - stamps
-        if len(passed) < 2 * FEW:
-            return 0
-        usual, apart = float(np.median(passed)), float(np.median(waited))
-        steady = waited < 2 * apart + MIN_STEP
-        ahead = steady & (passed - waited > MIN_DRIFT) & (passed > 2 * usual)
-        back = steady & (waited - passed > MIN_DRIFT) & (passed < usual / 2)
-        for row in np.flatnonzero(ahead | back).tolist():
-            before, after = offsets[max(0, row + 1 - ORDERED) : row + 1], offsets[row + 1 : row + 1 + FEW]
-            if len(after) < FEW or len(before) < FEW:
-                continue
-            if ahead[row] and before.min() - after.max() > MIN_DRIFT:
-                return -int(np.median(before) - np.median(after))
-            if back[row] and after.min() - before.max() > MIN_DRIFT:
-                return int(np.median(after) - np.median(before))
-        return 0
-
-    def arrays(self) -> tuple[Nanoseconds, Nanoseconds]:
-        pairs = [*zip(self.received, self.stamps, strict=True)]
-        # Beyond the last pair, the clocks count as equally fast, so the last message belongs to them.
-        found = np.array([*pairs, self.last] if self.last[0] > pairs[-1][0] else pairs, dtype=np.int64)
-        return found[:, 0], found[:, 1]
 
 
 def _reference(known: dict[Source, tuple[Nanoseconds, Nanoseconds]]) -> Source:
