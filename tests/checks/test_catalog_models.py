@@ -12,7 +12,7 @@ scene inst (ns=s) bench_mjc { scene: <bench_scene> }
 """
 
 
-def told(text: str, *files: str) -> list[str]:
+def messages_of(text: str, *files: str) -> list[str]:
     case = fixture("\n".join([f"//- lab.scene\n{text}", *files]))
     found = [entry for entry in fast_diagnostics(case.snapshot, case.uri) if entry.code == "catalog-models"]
     assert {entry.severity for entry in found} <= {Severity.INFORMATION}
@@ -20,13 +20,13 @@ def told(text: str, *files: str) -> list[str]:
 
 
 def test_a_scene_says_once_what_its_elements_are() -> None:
-    assert told(SCENE) == [
+    assert messages_of(SCENE) == [
         "bench_scene: bolt as bolt; panda as franka-panda; nut as nut; bench as table; tray as tray; ur10 as ur10"
     ]
 
 
 def test_an_executable_scene_says_it_better() -> None:
-    assert told(SCENE, f"//- bench.scenex\n{INSTANCE}") == []
+    assert messages_of(SCENE, f"//- bench.scenex\n{INSTANCE}") == []
 
 
 def test_a_scene_of_which_nothing_is_in_the_catalog_says_nothing() -> None:
@@ -34,4 +34,4 @@ def test_a_scene_of_which_nothing_is_in_the_catalog_says_nothing() -> None:
     text = text.replace("agent panda", "agent one").replace("agent ur10", "agent two")
     text = text.replace("object bolt, object nut", "object gizmo, object gadget")
     text = text.replace("<furniture.bench>", "<furniture.plank>").replace("<furniture.tray>", "<furniture.dish>")
-    assert told(text) == []
+    assert messages_of(text) == []

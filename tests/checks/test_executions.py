@@ -51,14 +51,14 @@ def findings(case: Fixture) -> list[Diagnostic]:
     return fast_diagnostics(case.snapshot, case.uri)
 
 
-def told(case: Fixture) -> list[tuple[str, str]]:
+def texts_and_codes(case: Fixture) -> list[tuple[str, str]]:
     """Text and code of each finding."""
     text = case.snapshot.document(case.uri).text
     return [(text[one.span.start : one.span.end], one.code) for one in findings(case)]
 
 
 def test_a_sound_execution_has_no_finding() -> None:
-    assert told(execution()) == []
+    assert texts_and_codes(execution()) == []
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_a_sound_execution_has_no_finding() -> None:
 def test_a_number_that_cannot_be_is_an_error_at_the_number(old: str, new: str, blamed: str, message: str) -> None:
     case = execution(old, new)
     (found,) = findings(case)
-    assert told(case) == [(blamed, "number-range")]
+    assert texts_and_codes(case) == [(blamed, "number-range")]
     assert found.severity is Severity.ERROR
     assert found.message.startswith(message)
 
@@ -126,7 +126,7 @@ def test_a_number_with_a_certain_fix_is_fixed(old: str, new: str, fixed: str) ->
 def test_what_needs_ros_is_an_information_with_its_counterpart(old: str, new: str, blamed: str) -> None:
     case = execution(old, new)
     (found,) = findings(case)
-    assert (told(case), found.severity) == ([(blamed, "not-simulated")], Severity.INFORMATION)
+    assert (texts_and_codes(case), found.severity) == ([(blamed, "not-simulated")], Severity.INFORMATION)
     apply(case, found.fixes[0])
     assert findings(case) == []
 
@@ -135,13 +135,13 @@ def test_a_trinary_topic_has_no_counterpart() -> None:
     rule = BDDX[BDDX.index("    observations") : BDDX.index("}\nScenario")]
     case = execution(rule, '    trinary topic: "/seen"\n')
     (found,) = findings(case)
-    assert (told(case), found.fixes) == ([('trinary topic: "/seen"', "not-simulated")], ())
+    assert (texts_and_codes(case), found.fixes) == ([('trinary topic: "/seen"', "not-simulated")], ())
 
 
 def test_an_implementation_that_does_not_execute_the_behaviour_is_reported_where_it_is_used() -> None:
     case = execution('"pick-place"', '"pick"')
     (found,) = findings(case)
-    assert told(case) == [("built-in", "execution-fit")]
+    assert texts_and_codes(case) == [("built-in", "execution-fit")]
     assert found.message == "'pick' of the catalog does not execute 'pick-place', so that all clauses stay unknown"
     apply(case, found.fixes[0])
     assert case.project.texts()[case.uri][1] == BDDX
@@ -153,7 +153,7 @@ def test_a_policy_for_a_duration_is_reported_where_it_names_the_clause() -> None
     )
     assert in_time != MODEL
     case = fixture(f"//- run.bddx\n{BDDX}//- main.bdd\n{in_time}//- lab.scenex\n{SCENEX}")
-    assert ("fetch.in-tray", "execution-fit") in told(case)
+    assert ("fetch.in-tray", "execution-fit") in texts_and_codes(case)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.catalog.executable import ModelSource
 
 STIFFNESS = 2000.0
@@ -22,12 +24,16 @@ FREQUENCY, RATIO = 20.0, 0.7
 STEADY = 5.0
 """A joint with an added servo has an inertia of at least this many times its damping times the time step."""
 
+Range = tuple[float, float]
+"""Smallest and largest force (N, N m)."""
+UNLIMITED: Range = (-inf, inf)
+
 
 def add_servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -> None:
     """Replace the motor or velocity servo of each joint without a position servo by a position servo.
 
     A servo with gravity compensation is a joint impedance controller: it drives torque-controlled arms, too. Followers
-    are not driven. The largest force of a drive bears the arm's own weight, too.
+    are not driven. The forces that a drive can exert bear the arm's own weight, too.
     """
     driven = {str(one.target): one for one in spec.actuators if one.trntype == mujoco.mjtTrn.mjTRN_JOINT}
     for joint in followers:
@@ -36,8 +42,8 @@ def add_servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -
     inertias = _inertias(spec, joints)
     for joint in joints:
         actuator = driven.get(joint)
-        limit = 0.0 if actuator is None else _largest_force(actuator)
-        _limit_drive(spec.joint(joint), limit)
+        forces = UNLIMITED if actuator is None else _forces(actuator)
+        _limit_drive(spec.joint(joint), forces)
         if actuator is not None and _is_position_servo(actuator):
             continue
         if actuator is not None:
@@ -52,8 +58,8 @@ def add_servos(spec: Any, joints: tuple[str, ...], followers: tuple[str, ...]) -
         stiffness = max(STIFFNESS * sliding, FREQUENCY**2 * inertia)
         servo = spec.add_actuator(name=f"{joint}-servo", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         servo.set_to_position(kp=stiffness, kv=2 * RATIO * (stiffness * inertia) ** 0.5)
-        if limit > 0:
-            servo.forcerange, servo.forcelimited = [-limit, limit], True
+        if isfinite(forces[1]):
+            servo.forcerange, servo.forcelimited = forces, True
 
 
 def refuse_weak_drives(
@@ -66,9 +72,10 @@ def refuse_weak_drives(
     mujoco.mj_forward(model, data)
     for joint in joints:
         number = model.joint(joint).id
-        needed = abs(float(data.qfrc_gravcomp[model.jnt_dofadr[number]]))
-        bears = float(model.jnt_actfrcrange[number, 1])
-        if model.jnt_actfrclimited[number] and needed > bears:
+        needed = float(data.qfrc_gravcomp[model.jnt_dofadr[number]])
+        low, high = model.jnt_actfrcrange[number].tolist()
+        if model.jnt_actfrclimited[number] and not low <= needed <= high:
+            bears, needed = max(high if needed > 0 else -low, 0.0), abs(needed)
             unit = "N" if model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE else "N m"
             weak = f"the drive of '{joint}' bears {bears:.3g} {unit}"
             weight = f"at home the arm's own weight needs {needed:.3g} {unit}"
@@ -77,13 +84,12 @@ def refuse_weak_drives(
             )
 
 
-def _limit_drive(joint: Any, limit: float) -> None:
-    """Let the drive of a joint bear the arm's weight with at most ``limit`` (N, N m), and the joint's own limit."""
+def _limit_drive(joint: Any, forces: Range) -> None:
+    """Let the drive of a joint bear the arm's weight within its ``forces`` and the joint's own limits."""
     joint.actgravcomp = True
-    stated = float(joint.actfrcrange[1]) if joint.actfrcrange[0] < joint.actfrcrange[1] else 0.0
-    limits = [one for one in (limit, stated) if one > 0]
-    if limits:
-        joint.actfrcrange, joint.actfrclimited = [-min(limits), min(limits)], True
+    low, high = _common(forces, _range(joint.actfrcrange, joint.actfrclimited))
+    if isfinite(high):
+        joint.actfrcrange, joint.actfrclimited = [low, high], True
 
 
 def _is_position_servo(actuator: Any) -> bool:
@@ -95,14 +101,27 @@ def _is_position_servo(actuator: Any) -> bool:
     )
 
 
-def _largest_force(actuator: Any) -> float:
-    """Return the largest force (N, N m) of an actuator on its joint; 0 if it has no limit."""
-    if actuator.forcerange[1] > actuator.forcerange[0]:
-        return float(actuator.forcerange[1] * abs(actuator.gear[0]))
-    is_motor = actuator.biastype == mujoco.mjtBias.mjBIAS_NONE
-    if is_motor and actuator.ctrlrange[1] > actuator.ctrlrange[0]:
-        return float(actuator.ctrlrange[1] * abs(actuator.gear[0]) * actuator.gainprm[0])
-    return 0.0
+def _forces(actuator: Any) -> Range:
+    """Return the forces that an actuator can exert on its joint."""
+    forces = _range(actuator.forcerange, actuator.forcelimited)
+    if actuator.biastype == mujoco.mjtBias.mjBIAS_NONE:
+        forces = _common(forces, _scaled(_range(actuator.ctrlrange, actuator.ctrllimited), actuator.gainprm[0]))
+    return _scaled(forces, actuator.gear[0])
+
+
+def _range(stated: FloatArray, limited: int) -> Range:
+    """Return a range of a file; an empty one, or one that is switched off, limits nothing."""
+    low, high = float(stated[0]), float(stated[1])
+    return (low, high) if low < high and limited != mujoco.mjtLimited.mjLIMITED_FALSE else UNLIMITED
+
+
+def _common(one: Range, other: Range) -> Range:
+    return max(one[0], other[0]), min(one[1], other[1])
+
+
+def _scaled(forces: Range, factor: float) -> Range:
+    low, high = sorted((forces[0] * float(factor), forces[1] * float(factor)))
+    return low, high
 
 
 def _inertias(spec: Any, joints: tuple[str, ...]) -> dict[str, float]:
